@@ -1,0 +1,212 @@
+//! One run, with the trace that was asked for.
+
+use breakaway_core::extraction::Sample;
+use breakaway_core::metrics::Limits;
+use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
+
+use crate::draws::HeldDraws;
+
+/// The names of a trace's columns.
+pub const TRACE_COLUMNS: [&str; 7] = [
+    "t_s",
+    "reference_m",
+    "position_m",
+    "velocity_m_per_s",
+    "bristle_m",
+    "applied_force_n",
+    "joint_force_n",
+];
+
+/// An extraction to run.
+#[derive(Clone, Copy, Debug)]
+pub struct Job {
+    /// What is run.
+    pub extraction: Extraction<f64>,
+    /// Where it ends, and how it is judged.
+    pub limits: Limits<f64>,
+    /// Control periods to run for.
+    pub samples: u64,
+    /// Seed of all random draws.
+    pub seed: u64,
+    /// Number of the run among the runs of that seed.
+    pub run: u64,
+    /// Every how many samples the trace keeps a row; 0 for no trace.
+    pub trace_every: u64,
+}
+
+/// A trace: one column of numbers for each of [`TRACE_COLUMNS`].
+pub type Trace = [Vec<f64>; TRACE_COLUMNS.len()];
+
+/// What a run gave.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Its sums and extremes.
+    pub metrics: Metrics<f64>,
+    /// The state it ended in.
+    pub state: ExtractionState<f64>,
+    /// The rows that were asked for.
+    pub trace: Trace,
+}
+
+/// How often a run asks whether it should go on.
+const SAMPLES_PER_CHECK: u64 = 1 << 14;
+
+/// Runs a job to its end, or until it diverges.
+///
+/// `keep_going` is asked now and then; once it answers `Err`, so does the run.
+///
+/// A row of the trace holds the state at a sample and the forces during the period after it. The
+/// last row is the state after the last period, with the forces of that period.
+///
+/// The loop is compiled twice, because compilers target the oldest processor of a family, where
+/// a fused multiply-add is a library call. Both give the same bits.
+///
+/// # Errors
+/// What `keep_going` gave.
+pub fn run<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<Run, E> {
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+        // SAFETY: the processor was just asked for both features.
+        #[allow(unsafe_code)]
+        return unsafe { run_with_fma(job, keep_going) };
+    }
+    run_loop(job, keep_going)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+#[allow(unsafe_code)]
+unsafe fn run_with_fma<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<Run, E> {
+    run_loop(job, keep_going)
+}
+
+#[inline(always)]
+fn run_loop<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Result<Run, E> {
+    let mut progress = Progress { state: ExtractionState::at_rest(), metrics: Metrics::new() };
+    let disturbance = &job.extraction.disturbance;
+    let period_s = job.extraction.timing.control_period_s;
+    let mut draws = HeldDraws::new(job.seed, job.run, disturbance.hold_s, period_s);
+    let mut trace = Trace::default();
+    let mut next_row = if job.trace_every == 0 { u64::MAX - 1 } else { 0 };
+    let mut n = 0;
+    while n < job.samples && progress.metrics.bounded == 1.0 {
+        let (held, redraw) = if disturbance.var == 0.0 { (0.0, u64::MAX) } else { draws.at(n) };
+        let check = (n / SAMPLES_PER_CHECK + 1) * SAMPLES_PER_CHECK;
+        let end = job.samples.min(redraw).min(next_row + 1).min(check);
+        let last = progress.advance(job, Draws { disturbance: held }, end - n);
+        n = end;
+        if n == next_row + 1 {
+            record(&mut trace, &last);
+            next_row += job.trace_every;
+        }
+        if n == job.samples && job.trace_every != 0 {
+            record(&mut trace, &job.end_of(&last, &progress.state));
+        }
+        if n == check {
+            keep_going()?;
+        }
+    }
+    let Progress { state, metrics } = progress;
+    Ok(Run { outcome: metrics.outcome(&job.limits), metrics, state, trace })
+}
+
+/// A run under way.
+struct Progress {
+    state: ExtractionState<f64>,
+    metrics: Metrics<f64>,
+}
+
+impl Progress {
+    /// Takes `count` samples, at least one, with one draw; stops early where the run leaves its
+    /// bounds. Gives the last sample. What moves at every sample is kept in local variables, and
+    /// so in registers.
+    #[inline(always)]
+    fn advance(&mut self, job: &Job, draws: Draws<f64>, count: u64) -> Sample<f64> {
+        let (extraction, limits) = (job.extraction, job.limits);
+        let (mut state, mut metrics) = (self.state, self.metrics);
+        let mut left = count;
+        loop {
+            let sample = extraction.step(&mut state, draws);
+            metrics.update(&limits, &sample);
+            left -= 1;
+            if left == 0 || metrics.bounded == 0.0 {
+                (self.state, self.metrics) = (state, metrics);
+                return sample;
+            }
+        }
+    }
+}
+
+fn record(trace: &mut Trace, sample: &Sample<f64>) {
+    let row = [
+        sample.time_s,
+        sample.reference_m,
+        sample.position_m,
+        sample.velocity_m_per_s,
+        sample.bristle_m,
+        sample.applied_force_n,
+        sample.joint_force_n,
+    ];
+    for (column, value) in trace.iter_mut().zip(row) {
+        column.push(value);
+    }
+}
+
+impl Job {
+    /// The state after the last sample, as a row.
+    fn end_of(&self, last: &Sample<f64>, state: &ExtractionState<f64>) -> Sample<f64> {
+        let time_s = self.samples as f64 * last.period_s;
+        Sample {
+            time_s,
+            reference_m: self.extraction.reference.sample(time_s).0,
+            position_m: state.plant.position_m,
+            velocity_m_per_s: state.plant.velocity_m_per_s,
+            bristle_m: state.plant.bristle_m,
+            ..*last
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Job, run, run_loop};
+    use breakaway_core::test_models::{paper_as_computed, paper_limits};
+    use std::convert::Infallible;
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        let mut job = Job {
+            extraction: paper_as_computed(),
+            limits: paper_limits(),
+            samples: 20_000,
+            seed: 3,
+            run: 1,
+            trace_every: 7,
+        };
+        job.extraction.disturbance.var = 0.2;
+        let Ok(chosen) = run::<Infallible>(&job, || Ok(()));
+        let Ok(portable) = run_loop::<Infallible>(&job, || Ok(()));
+        assert_eq!(chosen.metrics, portable.metrics);
+        assert_eq!(chosen.trace, portable.trace);
+    }
+
+    #[test]
+    fn a_run_stops_when_it_is_told_to() {
+        let job = Job {
+            extraction: paper_as_computed(),
+            limits: paper_limits(),
+            samples: u64::MAX,
+            seed: 0,
+            run: 0,
+            trace_every: 0,
+        };
+        let mut asked = 0;
+        let stopped = run(&job, || {
+            asked += 1;
+            if asked == 3 { Err("enough") } else { Ok(()) }
+        });
+        assert_eq!(stopped.err(), Some("enough"));
+    }
+}

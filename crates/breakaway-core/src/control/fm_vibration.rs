@@ -1,0 +1,193 @@
+//! Frequency-modulated vibration.
+
+use super::Measurement;
+use crate::real::Real;
+
+/// The course of the force during a pulse, from 0 to 1 and back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum PulseShape {
+    /// Full force from start to end.
+    Rectangular,
+    /// sin(π u).
+    HalfSine,
+    /// sin²(π u).
+    RaisedCosine,
+}
+
+/// Pulses whose amplitude is given and whose frequency follows the error (paper, section 4.2).
+///
+/// ```text
+/// f = f_min + (f_max − f_min) min(|e| / e_full, 1)       pulse frequency
+/// u = phase / (f t_p)                                     progress of the pulse of width t_p
+/// F = A (b + (1 − b) shape(u))  for u < 1,  A b after     b the share held between pulses
+/// ```
+///
+/// The paper gives 80 to 160 Hz; `e_full`, the width and the shape are not printed. Not checked
+/// here: f_max below half the sampling rate, pulses that do not overlap (t_p f_max ≤ 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+pub struct FmVibration<R> {
+    /// f_min in Hz, at no error.
+    pub frequency_min_hz: R,
+    /// f_max in Hz, at full error.
+    pub frequency_max_hz: R,
+    /// e_full in m.
+    pub error_full_scale_m: R,
+    /// t_p in s.
+    pub pulse_width_s: R,
+    /// b, 0 to 1: the share of the amplitude that is held between pulses.
+    pub base_fraction: R,
+    /// The pulse's shape.
+    pub shape: PulseShape,
+}
+
+/// What moves: the phase in cycles, 0 to 1.
+pub type FmVibrationState<R> = R;
+
+impl<R: Real> FmVibration<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> FmVibration<S> {
+        FmVibration {
+            frequency_min_hz: f("frequency_min_hz", self.frequency_min_hz),
+            frequency_max_hz: f("frequency_max_hz", self.frequency_max_hz),
+            error_full_scale_m: f("error_full_scale_m", self.error_full_scale_m),
+            pulse_width_s: f("pulse_width_s", self.pulse_width_s),
+            base_fraction: f("base_fraction", self.base_fraction),
+            shape: self.shape,
+        }
+    }
+
+    /// The pulse frequency in Hz for an error in m.
+    #[inline(always)]
+    pub fn frequency(&self, error_m: R) -> R {
+        let share = (error_m.abs() / self.error_full_scale_m).min(R::one());
+        self.frequency_min_hz + (self.frequency_max_hz - self.frequency_min_hz) * share
+    }
+
+    /// The force in N at a sample for an amplitude in N; moves the phase by one period.
+    #[inline(always)]
+    pub fn step(
+        &self,
+        phase: &mut FmVibrationState<R>,
+        amplitude_n: R,
+        measured: &Measurement<R>,
+    ) -> R {
+        let frequency = self.frequency(measured.error_m());
+        let progress = *phase / (frequency * self.pulse_width_s);
+        let pulse = R::select(progress.lt(R::one()), self.shape(progress), R::zero());
+        let next = *phase + frequency * measured.period_s;
+        *phase = next - R::flag(R::one().le(next));
+        let base = self.base_fraction;
+        amplitude_n * (base + (R::one() - base) * pulse)
+    }
+
+    #[inline(always)]
+    fn shape(&self, u: R) -> R {
+        match self.shape {
+            PulseShape::Rectangular => R::one(),
+            PulseShape::HalfSine => half_sine(u),
+            PulseShape::RaisedCosine => half_sine(u) * half_sine(u),
+        }
+    }
+}
+
+/// sin(π u) for 0 ≤ u ≤ 1, as the cosine's series in π (u − ½); error below 1e-14.
+#[inline(always)]
+fn half_sine<R: Real>(u: R) -> R {
+    const COSINE: [f64; 10] = [
+        1.0,
+        -1.0 / 2.0,
+        1.0 / 24.0,
+        -1.0 / 720.0,
+        1.0 / 40_320.0,
+        -1.0 / 3_628_800.0,
+        1.0 / 479_001_600.0,
+        -1.0 / 87_178_291_200.0,
+        1.0 / 20_922_789_888_000.0,
+        -1.0 / 6_402_373_705_728_000.0,
+    ];
+    let y = R::constant(core::f64::consts::PI) * (u - R::constant(0.5));
+    let square = y * y;
+    let mut sum = R::constant(COSINE[9]);
+    for &coefficient in COSINE[..9].iter().rev() {
+        sum = sum * square + R::constant(coefficient);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::actuator::ForceRange;
+
+    fn vibration(shape: PulseShape) -> FmVibration<f64> {
+        FmVibration {
+            frequency_min_hz: 80.0,
+            frequency_max_hz: 160.0,
+            error_full_scale_m: 1e-3,
+            pulse_width_s: 1e-3,
+            base_fraction: 0.0,
+            shape,
+        }
+    }
+
+    fn measured(error_m: f64) -> Measurement<f64> {
+        Measurement {
+            reference_m: error_m,
+            reference_rate_m_per_s: 0.0,
+            position_m: 0.0,
+            velocity_m_per_s: 0.0,
+            period_s: 1e-5,
+            range: ForceRange { min_n: 0.0, max_n: 1e3 },
+        }
+    }
+
+    #[test]
+    fn half_sine_is_the_sine() {
+        for i in 0..=1000 {
+            let u = f64::from(i) * 1e-3;
+            assert!((half_sine(u) - (core::f64::consts::PI * u).sin()).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn pulses_per_second_and_their_width_follow_the_error() {
+        for (error, hertz) in [(0.0, 80), (0.5e-3, 120), (-1e-3, 160), (1.0, 160)] {
+            let (mut phase, mut starts, mut samples, mut last) = (0.0, 0, 0, 0.0);
+            for _ in 0..100_000 {
+                let force =
+                    vibration(PulseShape::Rectangular).step(&mut phase, 5.0, &measured(error));
+                starts += i32::from(force > 0.0 && last == 0.0);
+                samples += i32::from(force > 0.0);
+                last = force;
+            }
+            assert_eq!(starts, hertz, "at error {error}");
+            assert!((samples - 100 * hertz).abs() <= hertz, "{samples} samples of force");
+        }
+    }
+
+    #[test]
+    fn shapes_have_their_mean() {
+        for (shape, mean) in [
+            (PulseShape::Rectangular, 1.0),
+            (PulseShape::HalfSine, 2.0 / core::f64::consts::PI),
+            (PulseShape::RaisedCosine, 0.5),
+        ] {
+            let (mut phase, mut sum) = (0.0, 0.0);
+            for _ in 0..1250 {
+                sum += vibration(shape).step(&mut phase, 1.0, &measured(0.0));
+            }
+            assert!((sum / 100.0 - mean).abs() < 0.02, "{shape:?}: {}", sum / 100.0);
+        }
+    }
+
+    #[test]
+    fn the_base_is_held_between_pulses() {
+        let mut held = vibration(PulseShape::Rectangular);
+        held.base_fraction = 0.4;
+        let mut phase = 0.5;
+        assert_eq!(held.step(&mut phase, 10.0, &measured(0.0)), 4.0);
+    }
+}

@@ -1,0 +1,286 @@
+//! Sampled PID force controller.
+
+use super::Measurement;
+use crate::parameters::parameters;
+use crate::real::Real;
+
+parameters! {
+    /// PID gains.
+    pub struct Gains {
+        /// Proportional gain in N/m.
+        pub kp_n_per_m,
+        /// Integral gain in N/(m s).
+        pub ki_n_per_m_s,
+        /// Derivative gain in N s/m.
+        pub kd_n_s_per_m,
+    }
+}
+
+/// What the derivative term differentiates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum DerivativeOf {
+    /// The error: kd (dr/dt − v). The reference's rate is known, not differenced.
+    Error,
+    /// The measurement: −kd v. No kick when the reference jumps.
+    Measurement,
+}
+
+/// Where the controller takes the velocity from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum VelocityFrom {
+    /// A velocity sensor (in simulation: the plant's velocity at the sample).
+    Sensor,
+    /// The backward difference of the measured position.
+    PositionDifference,
+}
+
+/// What keeps the integral from winding up while the actuator is at a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum AntiWindup {
+    /// Nothing; and the output is not limited by the controller either.
+    Off,
+    /// The integral stands still while it would drive the output further past a limit.
+    Conditional,
+    /// The integral is driven back by the excess over a tracking time.
+    BackCalculation,
+}
+
+/// F = kp e + I + kd d, sampled every T_s.
+///
+/// ```text
+/// I ← I + ki e T_s                            before use, held in N
+/// d ← (1 − s) d + s d_raw                      s = T_s / (τ_f + T_s), d_raw = dr/dt − v or −v
+/// ```
+///
+/// The integral is kept as a force, so a change of `ki` is bumpless by itself;
+/// [`Pid::take_over`] makes a change of all gains bumpless. `PidState` is what moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+pub struct Pid<R> {
+    /// Gains.
+    pub gains: Gains<R>,
+    /// What the derivative term differentiates.
+    pub derivative_of: DerivativeOf,
+    /// Where the velocity comes from.
+    pub velocity_from: VelocityFrom,
+    /// τ_f in s, time constant of the first-order filter on the derivative; 0 for none.
+    pub derivative_filter_s: R,
+    /// What is done at the actuator's limits.
+    pub anti_windup: AntiWindup,
+    /// Tracking time in s of the back calculation, above 0.
+    pub tracking_time_s: R,
+}
+
+/// What moves in a PID.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PidState<R> {
+    /// I in N.
+    pub integral_n: R,
+    /// d in m/s.
+    pub derivative_m_per_s: R,
+    /// The measured position at the last sample, m.
+    pub previous_position_m: R,
+}
+
+/// The filtered derivative in parts, d = kept + share · raw, so that a gain can be multiplied in
+/// before the newest velocity is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Filtered<R> {
+    kept: R,
+    share: R,
+    raw: R,
+}
+
+impl<R: Real> Pid<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Pid<S> {
+        Pid {
+            gains: self.gains.map(f),
+            derivative_of: self.derivative_of,
+            velocity_from: self.velocity_from,
+            derivative_filter_s: f("derivative_filter_s", self.derivative_filter_s),
+            anti_windup: self.anti_windup,
+            tracking_time_s: f("tracking_time_s", self.tracking_time_s),
+        }
+    }
+
+    /// The force in N for a sample.
+    #[inline(always)]
+    pub fn step(&self, state: &mut PidState<R>, measured: &Measurement<R>) -> R {
+        let filtered = self.sense(state, measured);
+        self.output(&self.gains, &filtered, state, measured)
+    }
+
+    /// Updates the filtered derivative from a sample; gives its parts.
+    #[inline(always)]
+    pub(super) fn sense(&self, state: &mut PidState<R>, measured: &Measurement<R>) -> Filtered<R> {
+        let velocity = match self.velocity_from {
+            VelocityFrom::Sensor => measured.velocity_m_per_s,
+            VelocityFrom::PositionDifference => {
+                (measured.position_m - state.previous_position_m) / measured.period_s
+            }
+        };
+        let raw = match self.derivative_of {
+            DerivativeOf::Error => measured.reference_rate_m_per_s - velocity,
+            DerivativeOf::Measurement => -velocity,
+        };
+        let share = measured.period_s / (self.derivative_filter_s + measured.period_s);
+        let kept = (R::one() - share) * state.derivative_m_per_s;
+        state.derivative_m_per_s = share.mul_add(raw, kept);
+        state.previous_position_m = measured.position_m;
+        Filtered { kept, share, raw }
+    }
+
+    /// The force in N for `gains` after [`Pid::sense`]; moves the integral.
+    #[inline(always)]
+    pub(super) fn output(
+        &self,
+        gains: &Gains<R>,
+        filtered: &Filtered<R>,
+        state: &mut PidState<R>,
+        measured: &Measurement<R>,
+    ) -> R {
+        let error = measured.error_m();
+        let kd = gains.kd_n_s_per_m;
+        let derivative = (kd * filtered.share).mul_add(filtered.raw, kd * filtered.kept);
+        let direct = gains.kp_n_per_m.mul_add(error, derivative);
+        let advanced = (gains.ki_n_per_m_s * measured.period_s).mul_add(error, state.integral_n);
+        let wanted = direct + advanced;
+        let limited = measured.range.limit(wanted);
+        match self.anti_windup {
+            AntiWindup::Off => {
+                state.integral_n = advanced;
+                wanted
+            }
+            AntiWindup::Conditional => {
+                let winds_up = (limited.lt(wanted) & state.integral_n.lt(advanced))
+                    | (wanted.lt(limited) & advanced.lt(state.integral_n));
+                state.integral_n = R::select(winds_up, state.integral_n, advanced);
+                measured.range.limit(direct + state.integral_n)
+            }
+            AntiWindup::BackCalculation => {
+                let share = measured.period_s / self.tracking_time_s;
+                state.integral_n = share.mul_add(limited - wanted, advanced);
+                limited
+            }
+        }
+    }
+
+    /// Moves the integral so that changing gains `from` to `to` leaves the output where it is.
+    #[inline(always)]
+    pub fn take_over(
+        &self,
+        from: &Gains<R>,
+        to: &Gains<R>,
+        state: &mut PidState<R>,
+        measured: &Measurement<R>,
+    ) {
+        let bump = (from.kp_n_per_m - to.kp_n_per_m) * measured.error_m()
+            + (from.kd_n_s_per_m - to.kd_n_s_per_m) * state.derivative_m_per_s;
+        state.integral_n = state.integral_n + bump;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::ForceRange;
+
+    fn pid(anti_windup: AntiWindup) -> Pid<f64> {
+        Pid {
+            gains: Gains { kp_n_per_m: 1e4, ki_n_per_m_s: 2e5, kd_n_s_per_m: 50.0 },
+            derivative_of: DerivativeOf::Error,
+            velocity_from: VelocityFrom::Sensor,
+            derivative_filter_s: 0.0,
+            anti_windup,
+            tracking_time_s: 0.01,
+        }
+    }
+
+    fn sample(reference_m: f64, position_m: f64) -> Measurement<f64> {
+        Measurement {
+            reference_m,
+            reference_rate_m_per_s: 0.2,
+            position_m,
+            velocity_m_per_s: 0.05,
+            period_s: 1e-3,
+            range: ForceRange { min_n: 0.0, max_n: 100.0 },
+        }
+    }
+
+    fn at_rest() -> PidState<f64> {
+        PidState { integral_n: 0.0, derivative_m_per_s: 0.0, previous_position_m: 0.0 }
+    }
+
+    #[test]
+    fn one_sample_by_hand() {
+        // kp e = 20, ki e T_s = 0.4, kd (dr/dt - v) = 7.5
+        let force = pid(AntiWindup::Off).step(&mut at_rest(), &sample(0.002, 0.0));
+        assert!((force - 27.9).abs() < 1e-12, "{force}");
+    }
+
+    #[test]
+    fn derivative_of_the_measurement_ignores_the_reference() {
+        let controller = Pid { derivative_of: DerivativeOf::Measurement, ..pid(AntiWindup::Off) };
+        let force = controller.step(&mut at_rest(), &sample(0.002, 0.0));
+        assert!((force - (20.4 - 2.5)).abs() < 1e-12, "{force}");
+    }
+
+    #[test]
+    fn differenced_and_filtered_velocity_settles_on_the_true_one() {
+        let controller = Pid {
+            derivative_of: DerivativeOf::Measurement,
+            velocity_from: VelocityFrom::PositionDifference,
+            derivative_filter_s: 5e-3,
+            ..pid(AntiWindup::Off)
+        };
+        let mut state = at_rest();
+        for n in 1..100 {
+            controller.step(&mut state, &sample(0.0, 0.3 * 1e-3 * f64::from(n)));
+            if n == 1 {
+                assert!((state.derivative_m_per_s + 0.3 / 6.0).abs() < 1e-12); // T_s/(tau+T_s)
+            }
+        }
+        assert!((state.derivative_m_per_s + 0.3).abs() < 1e-6);
+    }
+
+    #[test]
+    fn without_anti_windup_the_integral_grows_and_with_it_it_does_not() {
+        let wound = |anti_windup| {
+            let (controller, mut state) = (pid(anti_windup), at_rest());
+            for _ in 0..1000 {
+                controller.step(&mut state, &sample(0.05, 0.0));
+            }
+            state.integral_n
+        };
+        assert!((wound(AntiWindup::Off) - 10_000.0).abs() < 1e-6);
+        assert_eq!(wound(AntiWindup::Conditional), 0.0);
+        // In balance: 10 N in per sample, (wanted - 100) / 10 out.
+        assert!((wound(AntiWindup::BackCalculation) + 317.5).abs() < 10.0);
+    }
+
+    #[test]
+    fn leaving_a_limit_is_prompt_with_anti_windup() {
+        let controller = pid(AntiWindup::Conditional);
+        let mut state = at_rest();
+        for _ in 0..1000 {
+            assert_eq!(controller.step(&mut state, &sample(0.05, 0.0)), 100.0);
+        }
+        assert!(controller.step(&mut state, &sample(0.0, 0.001)) < 1.0);
+    }
+
+    #[test]
+    fn taking_over_new_gains_does_not_bump() {
+        let controller = pid(AntiWindup::Off);
+        let new = Gains { kp_n_per_m: 3e3, ki_n_per_m_s: 0.0, kd_n_s_per_m: 400.0 };
+        let (mut state, measured) = (at_rest(), sample(0.002, 0.0));
+        let before = controller.step(&mut state, &measured);
+        controller.take_over(&controller.gains, &new, &mut state, &measured);
+        let filtered = controller.sense(&mut state, &measured);
+        let after = controller.output(&new, &filtered, &mut state, &measured);
+        assert!((after - before).abs() < 1e-12);
+    }
+}

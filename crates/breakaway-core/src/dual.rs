@@ -1,0 +1,164 @@
+//! Numbers that carry exact first derivatives.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::real::Real;
+
+/// A value and its derivatives with respect to `P` parameters (forward-mode differentiation).
+///
+/// The value goes through the very operations of `R`, so the value part of a run is bit-identical
+/// to the plain run, and `R` may itself be lanes: 32 gradients at once. `num-dual` offers neither
+/// (its elementary functions are the platform's, its scalars are floats); see `docs/adr/0003`.
+///
+/// Comparisons look at values only. At a `select` the derivative is that of the chosen side.
+///
+/// # Example
+/// ```
+/// use breakaway_core::{Dual, Real};
+/// let x = Dual::<f64, 1>::variable(0.5, 0);
+/// let y = (-(x * x)).exp();
+/// assert!((y.derivative[0] - -(-0.25_f64).exp()).abs() < 1e-15);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<R, const P: usize> {
+    /// The value.
+    pub value: R,
+    /// Its derivative with respect to each parameter.
+    pub derivative: [R; P],
+}
+
+impl<R: Real, const P: usize> Dual<R, P> {
+    /// The parameter number `index`, whose derivative with respect to itself is one.
+    ///
+    /// # Panics
+    /// If `index` is not below `P`.
+    #[must_use]
+    pub fn variable(value: R, index: usize) -> Self {
+        let mut derivative = [R::zero(); P];
+        derivative[index] = R::one();
+        Self { value, derivative }
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, value: R, f: impl Fn(R, R) -> R) -> Self {
+        let derivative = core::array::from_fn(|i| f(self.derivative[i], other.derivative[i]));
+        Self { value, derivative }
+    }
+
+    #[inline(always)]
+    fn chain(self, value: R, slope: R) -> Self {
+        Self { value, derivative: self.derivative.map(|d| d * slope) }
+    }
+}
+
+impl<R: Real, const P: usize> Add for Dual<R, P> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, self.value + other.value, |a, b| a + b)
+    }
+}
+
+impl<R: Real, const P: usize> Sub for Dual<R, P> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, self.value - other.value, |a, b| a - b)
+    }
+}
+
+impl<R: Real, const P: usize> Mul for Dual<R, P> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
+    }
+}
+
+impl<R: Real, const P: usize> Div for Dual<R, P> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let quotient = self.value / other.value;
+        let inverse = R::one() / other.value;
+        self.zip(other, quotient, |a, b| (a - quotient * b) * inverse)
+    }
+}
+
+impl<R: Real, const P: usize> Neg for Dual<R, P> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, derivative: self.derivative.map(|d| -d) }
+    }
+}
+
+impl<R: Real, const P: usize> Real for Dual<R, P> {
+    type Mask = R::Mask;
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self { value: R::constant(value), derivative: [R::zero(); P] }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> R::Mask {
+        self.value.lt(other.value)
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> R::Mask {
+        self.value.le(other.value)
+    }
+    #[inline(always)]
+    fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        yes.zip(no, R::select(mask, yes.value, no.value), |a, b| R::select(mask, a, b))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let slope = R::select(self.value.lt(R::zero()), -R::one(), R::one());
+        self.chain(self.value.abs(), slope)
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        let slope = |i: usize| {
+            let inner = self.value.mul_add(factor.derivative[i], addend.derivative[i]);
+            self.derivative[i].mul_add(factor.value, inner)
+        };
+        Self {
+            value: self.value.mul_add(factor.value, addend.value),
+            derivative: core::array::from_fn(slope),
+        }
+    }
+    #[inline(always)]
+    fn exp2_parts(self) -> (Self, Self) {
+        let (fraction, power) = self.value.exp2_parts();
+        let slope = fraction * R::constant(core::f64::consts::LN_2);
+        (self.chain(fraction, slope), Self { value: power, derivative: [R::zero(); P] })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Dual;
+    use crate::real::Real;
+
+    /// Every operation at once; the derivative is checked against a central difference.
+    fn all_operations<R: Real>(x: R, y: R) -> R {
+        let smooth = (x * y - x / y + (-(x * x)).exp()) * R::constant(3.0);
+        smooth.abs().mul_add(y, x)
+            + R::select(x.lt(y), x * x, y)
+            + x.sign() * y.clamp(-x.abs(), x.abs())
+    }
+
+    #[test]
+    fn derivatives_agree_with_central_differences() {
+        for (x, y) in [(0.7, 1.3), (-0.4, 0.2), (1.9, -2.5), (0.3, 0.1)] {
+            let d = all_operations(Dual::<f64, 2>::variable(x, 0), Dual::variable(y, 1));
+            let h = 1e-6;
+            let dx = (all_operations(x + h, y) - all_operations(x - h, y)) / (2.0 * h);
+            let dy = (all_operations(x, y + h) - all_operations(x, y - h)) / (2.0 * h);
+            assert_eq!(d.value, all_operations(x, y));
+            assert!((d.derivative[0] - dx).abs() < 1e-8 * (1.0 + dx.abs()), "{x} {y}");
+            assert!((d.derivative[1] - dy).abs() < 1e-8 * (1.0 + dy.abs()), "{x} {y}");
+        }
+    }
+}

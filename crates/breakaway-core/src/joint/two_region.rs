@@ -1,0 +1,79 @@
+//! The two-region law that the paper designs its controller with.
+
+use super::{Bristle, JointState, engaged_level};
+use crate::parameters::parameters;
+use crate::real::Real;
+
+parameters! {
+    /// Bristle spring and damper while stuck, Coulomb force while sliding: equation (9).
+    ///
+    /// ```text
+    /// stuck:    R = k_e z + c ż,  ż = v        until |k_e z| > F_s(x)
+    /// sliding:  R = F_c(x) sgn z               until v turns against the slip
+    /// ```
+    ///
+    /// The paper switches on the applied force and gives no way back. Here the joint switches on
+    /// what it can feel, its own elastic force, and catches again when the slip stops. A switch
+    /// takes effect at the start of a step, so the time of an event is exact to one step.
+    pub struct TwoRegion {
+        /// F_s0 in N, stiction force at the seat.
+        pub stiction_n,
+        /// F_c0 in N, Coulomb force at the seat.
+        pub coulomb_n,
+        /// k_e in N/m.
+        pub stiffness_n_per_m,
+        /// c in N s/m.
+        pub damping_n_s_per_m,
+        /// l_f in m.
+        pub engagement_length_m,
+        /// F_end in N, friction left at x = l_f.
+        pub residual_n,
+    }
+}
+
+impl<R: Real> TwoRegion<R> {
+    /// F_s(x) in N: equation (5).
+    #[inline(always)]
+    pub fn stiction(&self, x: R) -> R {
+        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, x)
+    }
+
+    /// F_c(x) in N: equation (6).
+    #[inline(always)]
+    pub fn coulomb(&self, x: R) -> R {
+        engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, x)
+    }
+
+    /// Breaks loose, catches, and while sliding holds the deflection that carries F_c(x).
+    #[inline(always)]
+    pub(super) fn settle(
+        &self,
+        state: JointState<R>,
+        x: R,
+        v: R,
+        level_factor: R,
+    ) -> JointState<R> {
+        let direction = state.bristle_m.sign();
+        let elastic = (self.stiffness_n_per_m * state.bristle_m).abs();
+        let slips_on = state.sliding.is_set() & R::zero().lt(v * direction);
+        let breaks = !state.sliding.is_set() & (self.stiction(x) * level_factor).lt(elastic);
+        let sliding = slips_on | breaks;
+        let slip_deflection = direction * self.coulomb(x) * level_factor / self.stiffness_n_per_m;
+        JointState {
+            bristle_m: R::select(sliding, slip_deflection, state.bristle_m),
+            sliding: R::flag(sliding),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn freeze(&self, state: &JointState<R>) -> Bristle<R> {
+        Bristle {
+            stretch: R::one() - state.sliding,
+            relaxation: R::zero(),
+            friction_level_n: R::one(),
+            stiffness_n_per_m: self.stiffness_n_per_m,
+            damping_n_s_per_m: self.damping_n_s_per_m,
+            viscous_n_s_per_m: R::zero(),
+        }
+    }
+}

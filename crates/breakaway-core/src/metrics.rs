@@ -1,0 +1,240 @@
+//! What a run reports, reduced sample by sample.
+
+use crate::extraction::Sample;
+use crate::parameters::parameters;
+use crate::real::Real;
+
+parameters! {
+    /// Where a run counts as diverged, released, loose, or too rough.
+    pub struct Limits {
+        /// |e| in m above which the run has diverged: l_f / 2.
+        pub diverged_error_m,
+        /// |F| in N above which the run has diverged: 20 F_s0.
+        pub diverged_force_n,
+        /// x in m at which the part counts as free: l_f less a tolerance, since a reference that
+        /// ends at l_f is approached from below.
+        pub release_position_m,
+        /// Travel in m at which the joint counts as loose: twice the presliding travel F_s0 / k_e.
+        pub breakaway_travel_m,
+        /// Largest |F| in N that is allowed.
+        pub peak_force_max_n,
+        /// Largest jump in m that is allowed.
+        pub jump_max_m,
+        /// Largest velocity at release in m/s that is allowed.
+        pub release_velocity_max_m_per_s,
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The part is free and no limit was exceeded.
+    Released,
+    /// Time ran out.
+    NotReleased,
+    /// |e| or |F| passed its bound, or was not a number.
+    Diverged,
+    /// The part is free or time ran out, and a limit was exceeded.
+    LimitExceeded,
+}
+
+parameters! {
+    /// Running sums and extremes. Times that have not come yet are infinite.
+    ///
+    /// Integrals over forces are exact for the held force; those over the error are sums of
+    /// the samples times the period, as the paper's index is.
+    pub struct Metrics {
+        /// 1 while |e| and |F| are within bounds; once 0, nothing is counted any more.
+        pub bounded,
+        /// ∫ dt over counted samples, s.
+        pub time_s,
+        /// IAE = ∫ |e| dt, m s.
+        pub iae_m_s,
+        /// ISE = ∫ e² dt, m² s.
+        pub ise_m2_s,
+        /// ITAE = ∫ t |e| dt, m s².
+        pub itae_m_s2,
+        /// Largest |e|, m.
+        pub largest_error_m,
+        /// Largest |F|, N.
+        pub peak_force_n,
+        /// ∫ F dt, N s.
+        pub impulse_n_s,
+        /// ∫ F² dt, N² s.
+        pub force_square_n2_s,
+        /// ∫ F dx, J.
+        pub work_j,
+        /// ∫ R dx, J: lost in the joint or stored in its bristles.
+        pub joint_work_j,
+        /// Time during which the actuator could not deliver the command, s.
+        pub saturated_s,
+        /// Time during which F > 0, s.
+        pub contact_s,
+        /// Number of impacts: stretches of time with F > 0.
+        pub impacts,
+        /// 1 while F > 0, else 0.
+        pub in_contact,
+        /// Travel since the start of the last impact, m.
+        pub step_m,
+        /// Work done since the start of the last impact, J.
+        pub impact_work_j,
+        /// Largest travel from the start of an impact to the start of the next or the end, m.
+        pub largest_step_m,
+        /// Largest work done by one impact, J.
+        pub largest_impact_work_j,
+        /// Travel in the current slip event above the reference's speed, m.
+        pub jump_m,
+        /// Largest jump, m.
+        pub largest_jump_m,
+        /// When the joint broke loose, s.
+        pub breakaway_s,
+        /// When the part came free, s.
+        pub release_s,
+        /// v when the part came free, m/s.
+        pub release_velocity_m_per_s,
+    }
+}
+
+impl<R: Real> Metrics<R> {
+    /// Nothing counted yet.
+    pub fn new() -> Self {
+        let zero = R::zero();
+        let not_yet = R::constant(f64::INFINITY);
+        Self {
+            bounded: R::one(),
+            time_s: zero,
+            iae_m_s: zero,
+            ise_m2_s: zero,
+            itae_m_s2: zero,
+            largest_error_m: zero,
+            peak_force_n: zero,
+            impulse_n_s: zero,
+            force_square_n2_s: zero,
+            work_j: zero,
+            joint_work_j: zero,
+            saturated_s: zero,
+            contact_s: zero,
+            impacts: zero,
+            in_contact: zero,
+            step_m: zero,
+            impact_work_j: zero,
+            largest_step_m: zero,
+            largest_impact_work_j: zero,
+            jump_m: zero,
+            largest_jump_m: zero,
+            breakaway_s: not_yet,
+            release_s: not_yet,
+            release_velocity_m_per_s: zero,
+        }
+    }
+
+    /// Counts a sample, unless the run has left its bounds.
+    ///
+    /// Out of bounds everything that is counted becomes zero, here and once: cheaper than keeping
+    /// every sum from a change, and a sample that is not a number is not counted either.
+    #[inline(always)]
+    pub fn update(&mut self, limits: &Limits<R>, sample: &Sample<R>) {
+        let error = (sample.reference_m - sample.position_m).abs();
+        let within = error.le(limits.diverged_error_m)
+            & sample.applied_force_n.abs().le(limits.diverged_force_n)
+            & sample.next_position_m.abs().lt(R::constant(f64::INFINITY));
+        let bounded = self.bounded.is_set() & within;
+        self.bounded = R::flag(bounded);
+        let counted = |value: R| R::select(bounded, value, R::zero());
+        let period_s = counted(sample.period_s);
+        let force = counted(sample.applied_force_n);
+        let travel = counted(sample.next_position_m - sample.position_m);
+        self.count_error(sample.time_s, period_s, counted(error));
+        self.count_force(period_s, force, travel, counted(sample.joint_force_n));
+        let missed = R::zero().lt((sample.command_n - sample.applied_force_n).abs());
+        self.saturated_s = self.saturated_s + R::select(missed, period_s, R::zero());
+        self.count_impacts(period_s, force, travel);
+        self.count_jump(period_s, travel, sample.reference_rate_m_per_s);
+        self.note_times(limits, sample, bounded);
+    }
+
+    #[inline(always)]
+    fn count_error(&mut self, time_s: R, period_s: R, error: R) {
+        let area = error * period_s;
+        self.time_s = self.time_s + period_s;
+        self.iae_m_s = self.iae_m_s + area;
+        self.ise_m2_s = error.mul_add(area, self.ise_m2_s);
+        self.itae_m_s2 = time_s.mul_add(area, self.itae_m_s2);
+        self.largest_error_m = self.largest_error_m.max(error);
+    }
+
+    #[inline(always)]
+    fn count_force(&mut self, period_s: R, force: R, travel: R, joint_force: R) {
+        let impulse = force * period_s;
+        self.peak_force_n = self.peak_force_n.max(force.abs());
+        self.impulse_n_s = self.impulse_n_s + impulse;
+        self.force_square_n2_s = force.mul_add(impulse, self.force_square_n2_s);
+        self.work_j = force.mul_add(travel, self.work_j);
+        self.joint_work_j = joint_force.mul_add(travel, self.joint_work_j);
+    }
+
+    #[inline(always)]
+    fn count_impacts(&mut self, period_s: R, force: R, travel: R) {
+        let zero = R::zero();
+        let contact = zero.lt(force);
+        let starts = contact & !self.in_contact.is_set();
+        self.in_contact = R::flag(contact);
+        self.contact_s = self.contact_s + R::select(contact, period_s, zero);
+        self.impacts = self.impacts + R::flag(starts);
+        self.step_m = R::select(starts, zero, self.step_m) + travel;
+        self.largest_step_m = self.largest_step_m.max(self.step_m);
+        self.impact_work_j = force.mul_add(travel, R::select(starts, zero, self.impact_work_j));
+        self.largest_impact_work_j = self.largest_impact_work_j.max(self.impact_work_j);
+    }
+
+    /// A jump is travel faster than the reference, which is what harms a part: it ends when the
+    /// part is no faster than the reference.
+    #[inline(always)]
+    fn count_jump(&mut self, period_s: R, travel: R, reference_rate: R) {
+        let commanded = reference_rate.max(R::zero());
+        let excess = (-commanded).mul_add(period_s, travel);
+        self.jump_m = R::select(R::zero().lt(excess), self.jump_m + excess, R::zero());
+        self.largest_jump_m = self.largest_jump_m.max(self.jump_m);
+    }
+
+    #[inline(always)]
+    fn note_times(&mut self, limits: &Limits<R>, sample: &Sample<R>, bounded: R::Mask) {
+        let not_yet = R::constant(f64::INFINITY);
+        let next_s = R::select(bounded, sample.time_s + sample.period_s, not_yet);
+        let loose = limits.breakaway_travel_m.lt(sample.next_position_m);
+        self.breakaway_s = self.breakaway_s.min(R::select(loose, next_s, not_yet));
+        let free = limits.release_position_m.le(sample.next_position_m);
+        let released_s = R::select(free, next_s, not_yet);
+        self.release_velocity_m_per_s = R::select(
+            released_s.lt(self.release_s),
+            sample.next_velocity_m_per_s,
+            self.release_velocity_m_per_s,
+        );
+        self.release_s = self.release_s.min(released_s);
+    }
+}
+
+impl Metrics<f64> {
+    /// How a run with these metrics ended.
+    #[must_use]
+    pub fn outcome(&self, limits: &Limits<f64>) -> Outcome {
+        let exceeded = self.peak_force_n > limits.peak_force_max_n
+            || self.largest_jump_m > limits.jump_max_m
+            || self.release_velocity_m_per_s > limits.release_velocity_max_m_per_s;
+        if self.bounded == 0.0 {
+            Outcome::Diverged
+        } else if exceeded {
+            Outcome::LimitExceeded
+        } else if self.release_s.is_finite() {
+            Outcome::Released
+        } else {
+            Outcome::NotReleased
+        }
+    }
+}
+
+impl<R: Real> Default for Metrics<R> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,29 @@
+//! One macro for every struct that holds only numbers.
+
+/// Defines a struct of numbers, generic over their type, with a `map` from one type to another.
+///
+/// `map` visits the fields in declaration order. It is how a configuration or a state is cast to
+/// `f32`, gathered into lanes, seeded with derivatives, or turned into recorded inputs.
+macro_rules! parameters {
+    ($(#[$meta:meta])* pub struct $name:ident { $( $(#[$field_meta:meta])* pub $field:ident ),+ $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+        pub struct $name<R> { $( $(#[$field_meta])* pub $field: R ),+ }
+
+        impl<R: Copy> $name<R> {
+            /// Applies `f` to every number, in declaration order, with the field's name.
+            pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> $name<S> {
+                $name { $( $field: f(stringify!($field), self.$field) ),+ }
+            }
+
+            /// Applies `f` to every number and its counterpart in `other`.
+            #[inline(always)]
+            pub fn zip<S: Copy, T>(&self, other: &$name<S>, f: impl Fn(R, S) -> T) -> $name<T> {
+                $name { $( $field: f(self.$field, other.$field) ),+ }
+            }
+        }
+    };
+}
+
+pub(crate) use parameters;

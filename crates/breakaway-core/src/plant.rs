@@ -1,0 +1,178 @@
+//! Newton's law for the part, and the two ways to integrate it with its joint.
+
+use crate::disturbance::Factors;
+use crate::joint::{Bristle, Joint, JointState};
+use crate::parameters::parameters;
+use crate::real::Real;
+
+parameters! {
+    /// What moves: the part on its seat.
+    pub struct PlantState {
+        /// x in m: 0 at the seat, l_f when free.
+        pub position_m,
+        /// v in m/s.
+        pub velocity_m_per_s,
+        /// z in m, deflection of the bristles.
+        pub bristle_m,
+        /// 1 while a law with a slip event slides, else 0.
+        pub sliding,
+        /// R in N before its disturbance, at the middle of the last step. Start it at zero.
+        pub joint_force_n,
+    }
+}
+
+impl<R: Real> PlantState<R> {
+    /// At rest on the seat, bristles relaxed.
+    pub fn at_rest() -> Self {
+        let zero = R::zero();
+        Self {
+            position_m: zero,
+            velocity_m_per_s: zero,
+            bristle_m: zero,
+            sliding: zero,
+            joint_force_n: zero,
+        }
+    }
+
+    #[inline(always)]
+    fn joint(&self) -> JointState<R> {
+        JointState { bristle_m: self.bristle_m, sliding: self.sliding }
+    }
+}
+
+/// How the plant is stepped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum Integrator {
+    /// Linearly implicit midpoint: second order, stable on the stiff bristle at the control period.
+    LinearlyImplicitMidpoint,
+    /// Classical Runge-Kutta of order four, explicit: the oracle, at a step of 0.1 us.
+    Rk4,
+}
+
+/// m dv/dt = F − R,  dx/dt = v,  with R = 0 beyond the end of the guide.
+#[derive(Clone, Copy, Debug)]
+pub struct Plant<'a, R> {
+    /// The joint that holds the part.
+    pub joint: &'a Joint<R>,
+    /// m in kg.
+    pub mass_kg: R,
+    /// F in N, constant over a step.
+    pub force_n: R,
+    /// The disturbance, constant over a step.
+    pub factors: Factors<R>,
+}
+
+impl<R: Real> Plant<'_, R> {
+    /// Steps by `h` seconds; gives the mean joint force in N over the step, disturbance included.
+    #[inline(always)]
+    pub fn step(&self, integrator: Integrator, state: &mut PlantState<R>, h: R) -> R {
+        let settled = self.joint.settle(
+            state.joint(),
+            state.position_m,
+            state.velocity_m_per_s,
+            self.factors.friction_level,
+        );
+        (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
+        let mean_force = match integrator {
+            Integrator::LinearlyImplicitMidpoint => self.linearly_implicit_midpoint(state, h),
+            Integrator::Rk4 => self.rk4(state, h),
+        };
+        let engaged = self.engaged(state.position_m);
+        state.bristle_m = R::select(engaged, state.bristle_m, R::zero());
+        mean_force
+    }
+
+    #[inline(always)]
+    fn engaged(&self, x: R) -> R::Mask {
+        x.lt(self.joint.engagement_length_m())
+    }
+
+    /// The factor on the joint force at position `x`: the disturbance, or zero once released.
+    #[inline(always)]
+    fn force_factor(&self, x: R) -> R {
+        R::select(self.engaged(x), self.factors.joint_force, R::zero())
+    }
+
+    /// The bristle equation is linear in (v, z) once its coefficients are frozen at a predicted
+    /// midpoint velocity; the midpoint rule then has the closed form below. With k = h/2,
+    /// w = v + k F/m and q = k n/m (n the factor on the joint force):
+    ///
+    /// ```text
+    /// v_m = w − q (k_e z_m + c ż_m + σ v_m),   z_m = z + k ż_m,   ż_m = α v_m − (A/g) z_m
+    /// den = g [1 + q σ + q α (c + k k_e)] + k A (1 + q σ)
+    /// v_m = [g (w − q k_e z) + A (k w + q c z)] / den
+    /// z_m = g [(1 + q (σ + α c)) z + k α w] / den
+    /// ```
+    ///
+    /// Multiplying through by g leaves one division; collecting powers of g leaves the shortest
+    /// chain after the exponential in g, which is what a single run waits for. Derivation and
+    /// error constants: `docs/derivations/linearly_implicit_midpoint.md`.
+    #[inline(always)]
+    fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, h: R) -> R {
+        let (v, z) = (state.velocity_m_per_s, state.bristle_m);
+        let k = R::constant(0.5) * h;
+        let k_over_m = k / self.mass_kg;
+        let x_mid = k.mul_add(v, state.position_m);
+        let n = self.force_factor(x_mid);
+        let q = k_over_m * n;
+        let w = k_over_m.mul_add(self.force_n, v);
+        let held_back = (-q).mul_add(state.joint_force_n, v);
+        let v_predicted = k_over_m.mul_add(self.force_n, held_back);
+        let level = self.factors.friction_level;
+        let b = self.joint.freeze(&state.joint(), x_mid, v_predicted, level);
+
+        let (g, a) = (b.friction_level_n, b.relaxation);
+        let (k_e, c) = (b.stiffness_n_per_m, b.damping_n_s_per_m);
+        let viscous = q.mul_add(b.viscous_n_s_per_m, R::one());
+        let q_stretch = q * b.stretch;
+        let per_level = q_stretch.mul_add(k.mul_add(k_e, c), viscous);
+        let two_over_den = R::constant(2.0) / g.mul_add(per_level, a * (k * viscous));
+        let slipping = a * k.mul_add(w, q * c * z);
+        let driven = g.mul_add((q * k_e).mul_add(-z, w), slipping);
+        let stretched = q_stretch.mul_add(c, viscous).mul_add(z, k * b.stretch * w);
+        let two_z = g * stretched * two_over_den;
+
+        // R = k_e z_m + c (z_m − z)/k + σ v_m at the middle of the step.
+        let half = R::constant(0.5);
+        let c_over_k = c * (R::one() / k);
+        let passed = (half * b.viscous_n_s_per_m * driven).mul_add(two_over_den, -(c_over_k * z));
+        state.joint_force_n = (half * (k_e + c_over_k)).mul_add(two_z, passed);
+        state.position_m = (k * driven).mul_add(two_over_den, state.position_m);
+        state.velocity_m_per_s = driven.mul_add(two_over_den, -v);
+        state.bristle_m = two_z - z;
+        n * state.joint_force_n
+    }
+
+    /// (dx/dt, dv/dt, dz/dt) and the joint force in N, disturbance included.
+    #[inline(always)]
+    fn rates(&self, state: &JointState<R>, x: R, v: R, z: R) -> ([R; 3], R) {
+        let b: Bristle<R> = self.joint.freeze(state, x, v, self.factors.friction_level);
+        let z_rate = b.rate(v, z);
+        let joint_force = self.force_factor(x) * b.force(v, z, z_rate);
+        ([v, (self.force_n - joint_force) / self.mass_kg, z_rate], joint_force)
+    }
+
+    #[inline(always)]
+    fn rk4(&self, state: &mut PlantState<R>, h: R) -> R {
+        let joint = state.joint();
+        let start = [state.position_m, state.velocity_m_per_s, state.bristle_m];
+        let at = |slope: &[R; 3], step: R| {
+            let [x, v, z] = core::array::from_fn(|i| start[i] + step * slope[i]);
+            self.rates(&joint, x, v, z)
+        };
+        let half = R::constant(0.5) * h;
+        let (k1, r1) = at(&[R::zero(); 3], R::zero());
+        let (k2, r2) = at(&k1, half);
+        let (k3, r3) = at(&k2, half);
+        let (k4, r4) = at(&k3, h);
+        let mean =
+            |a: R, b: R, c: R, d: R| (a + d + R::constant(2.0) * (b + c)) * R::constant(1.0 / 6.0);
+        let [x, v, z]: [R; 3] =
+            core::array::from_fn(|i| start[i] + h * mean(k1[i], k2[i], k3[i], k4[i]));
+        (state.position_m, state.velocity_m_per_s, state.bristle_m) = (x, v, z);
+        let joint_force = mean(r1, r2, r3, r4);
+        state.joint_force_n = joint_force / self.factors.joint_force;
+        joint_force
+    }
+}

@@ -1,0 +1,203 @@
+//! The number trait that every equation is generic over.
+
+use core::fmt::Debug;
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+use crate::exp2;
+
+/// A number that the equations can be computed with.
+///
+/// The operations are the ones that an export to C reproduces bit for bit: plus, minus, times,
+/// divide, fused multiply-add, compare, select, absolute value and the crate's own exponential.
+/// A multiply-add is fused where it is written and nowhere else, so every instruction set gives
+/// the same bits (see `docs/adr/0002`).
+///
+/// A condition is a [`Real::Mask`], not a `bool`: with lanes it differs from lane to lane, and
+/// when recording it is not known. Hence [`Real::select`] in place of `if`.
+///
+/// # Example
+/// ```
+/// use breakaway_core::Real;
+/// fn clip<R: Real>(x: R) -> R { x.max(R::constant(-1.0)).min(R::constant(1.0)) }
+/// assert_eq!(clip(3.0_f64), 1.0);
+/// assert_eq!(clip(-0.25_f32), -0.25);
+/// ```
+pub trait Real:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The result of a comparison.
+    type Mask: Copy
+        + Debug
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
+
+    /// The number nearest to `value`.
+    fn constant(value: f64) -> Self;
+
+    /// `self < other`; false where either is not a number.
+    fn lt(self, other: Self) -> Self::Mask;
+
+    /// `self <= other`; false where either is not a number.
+    fn le(self, other: Self) -> Self::Mask;
+
+    /// `yes` where `mask` holds, `no` elsewhere. Both are computed; the other one is dropped.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Absolute value.
+    fn abs(self) -> Self;
+
+    /// `self * factor + addend` with one rounding, on every machine. Fast where the processor
+    /// has the instruction and the caller is compiled for it; else a library call.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// 2 to the power of the number, as a fraction in [0.7, 1.42] and a power of two whose product
+    /// it is, to a relative error below 4e-16 (`f64`) or 2e-7 (`f32`).
+    ///
+    /// The power is ready before the fraction: multiply it by a coefficient first where speed
+    /// counts. Valid for -1022 ≤ self ≤ 1023 (`f64`) or -126 ≤ self ≤ 127 (`f32`); beyond, the
+    /// power stays at the end of the range.
+    fn exp2_parts(self) -> (Self, Self);
+
+    /// 2 to the power of the number: the product of [`Real::exp2_parts`].
+    #[inline(always)]
+    fn exp2(self) -> Self {
+        let (fraction, power) = self.exp2_parts();
+        fraction * power
+    }
+
+    /// The natural exponential.
+    #[inline(always)]
+    fn exp(self) -> Self {
+        (self * Self::constant(core::f64::consts::LOG2_E)).exp2()
+    }
+
+    /// Zero.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+
+    /// One.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::constant(1.0)
+    }
+
+    /// The smaller of two numbers; `other` where `self` is not a number.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.lt(other), self, other)
+    }
+
+    /// The larger of two numbers; `other` where `self` is not a number.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(other.lt(self), self, other)
+    }
+
+    /// `self` limited to `[low, high]`; `low` where `self` is not a number.
+    #[inline(always)]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+
+    /// -1, 0 or 1 with the sign of the number; 0 for both zeros.
+    #[inline(always)]
+    fn sign(self) -> Self {
+        let negative = Self::select(self.lt(Self::zero()), -Self::one(), Self::zero());
+        Self::select(Self::zero().lt(self), Self::one(), negative)
+    }
+
+    /// One where `mask` holds, zero elsewhere: a condition that can be kept in a state.
+    #[inline(always)]
+    fn flag(mask: Self::Mask) -> Self {
+        Self::select(mask, Self::one(), Self::zero())
+    }
+
+    /// Whether a flag made by [`Real::flag`] is up.
+    #[inline(always)]
+    fn is_set(self) -> Self::Mask {
+        Self::constant(0.5).lt(self)
+    }
+}
+
+macro_rules! impl_real {
+    ($float:ty, $exp2:path, $fma:path) => {
+        impl Real for $float {
+            type Mask = bool;
+
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> bool {
+                self < other
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> bool {
+                self <= other
+            }
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <$float>::abs(self)
+            }
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                $fma(self, factor, addend)
+            }
+            #[inline(always)]
+            fn exp2_parts(self) -> (Self, Self) {
+                $exp2(self)
+            }
+        }
+    };
+}
+
+/// The fused multiply-add of the platform, or the same in software.
+pub(crate) mod fused {
+    #[cfg(feature = "std")]
+    #[inline(always)]
+    pub(crate) fn fma_f64(a: f64, b: f64, c: f64) -> f64 {
+        f64::mul_add(a, b, c)
+    }
+    #[cfg(feature = "std")]
+    #[inline(always)]
+    pub(crate) fn fma_f32(a: f32, b: f32, c: f32) -> f32 {
+        f32::mul_add(a, b, c)
+    }
+    #[cfg(not(feature = "std"))]
+    pub(crate) use libm::{fma as fma_f64, fmaf as fma_f32};
+}
+
+impl_real!(f64, exp2::exp2_f64, fused::fma_f64);
+impl_real!(f32, exp2::exp2_f32, fused::fma_f32);
+
+#[cfg(test)]
+mod tests {
+    use super::Real;
+
+    #[test]
+    fn sign_of_zeros_and_signs() {
+        assert_eq!(Real::sign(-0.0_f64), 0.0);
+        assert_eq!(Real::sign(-2.0_f64), -1.0);
+        assert_eq!(Real::sign(1e-300_f64), 1.0);
+    }
+
+    #[test]
+    fn comparisons_with_nan_are_false() {
+        assert!(!Real::lt(f64::NAN, 1.0) && !Real::le(1.0, f64::NAN));
+        assert_eq!(Real::clamp(f64::NAN, -1.0, 1.0), -1.0);
+    }
+}

@@ -1,0 +1,21 @@
+"""Identification: from a measured log to the parameters of a part and its joint."""
+
+from __future__ import annotations
+
+from breakaway.identify.inertia_friction import (
+    NOT_IDENTIFIED,
+    AsymmetricFit,
+    InertiaFrictionFit,
+    SymmetricFit,
+    identify_inertia_friction,
+)
+from breakaway.identify.joint_file import JointFile
+
+__all__ = [
+    "NOT_IDENTIFIED",
+    "AsymmetricFit",
+    "InertiaFrictionFit",
+    "JointFile",
+    "SymmetricFit",
+    "identify_inertia_friction",
+]

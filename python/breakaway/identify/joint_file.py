@@ -1,0 +1,256 @@
+"""The joint file: what one log told about a joint, and what it did not."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Annotated
+
+import tomli_w
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from breakaway.errors import LogError, OutputError, ScenarioError
+from breakaway.identify.inertia_friction import InertiaFrictionFit
+from breakaway.logs.log import Log
+
+METHOD = "IDIM least squares (Janot, Gautier, Brunot 2019)"
+
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+
+
+class Table(BaseModel):
+    """A table of the joint file: no unknown keys, no conversions, finite numbers."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class Settings(Table):
+    """Settings of the identification."""
+
+    lowpass_hz: Positive
+    decimation: Annotated[int, Field(ge=1)]
+    sample_rate_hz: Positive
+    trimmed_samples: Annotated[int, Field(ge=0)]
+
+
+class Provenance(Table):
+    """Where the figures come from. ``log_sha256`` is absent for a log that was in no file."""
+
+    log: str
+    log_sha256: str | None = None
+    breakaway_version: str
+    method: str
+    settings: Settings
+    samples: Annotated[int, Field(ge=1)]
+    notes: list[str] = []
+
+
+class Part(Table):
+    """The moving part."""
+
+    mass_kg: Positive
+
+
+class Joint(Table):
+    """Sliding friction of the joint, the same in both directions."""
+
+    coulomb_n: NotNegative
+    viscous_n_s_per_m: NotNegative
+
+
+class Rig(Table):
+    """What belongs to the rig that measured, not to the joint."""
+
+    offset_n: float
+
+
+class StandardError(Table):
+    """Standard errors of the symmetric parameters."""
+
+    mass_kg: NotNegative
+    coulomb_n: NotNegative
+    viscous_n_s_per_m: NotNegative
+    offset_n: NotNegative
+
+
+class AsymmetricParameters(Table):
+    """Parameters with friction of its own in each direction, positive where it resists."""
+
+    mass_kg: float
+    viscous_positive_n_s_per_m: float
+    viscous_negative_n_s_per_m: float
+    coulomb_positive_n: float
+    coulomb_negative_n: float
+
+
+class Asymmetric(AsymmetricParameters):
+    """The asymmetric parameters and their standard errors."""
+
+    standard_error: AsymmetricParameters
+
+
+class RelativeForceError(Table):
+    """100 ‖F - W θ‖ / ‖F‖ of either fit, in percent."""
+
+    symmetric: NotNegative
+    asymmetric: NotNegative
+
+
+class JointFile(Table):
+    """An identified joint, as it is kept in ``joint.toml``.
+
+    Units are in the keys. ``not_identified`` maps a field of a scenario to the reason why the
+    log does not tell it: such a field keeps the scenario's own value.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from breakaway.identify import identify_inertia_friction
+    >>> t_s = np.arange(5000) / 1000.0
+    >>> v = 0.3 * np.cos(5 * t_s) + 0.2 * np.cos(2 * t_s)
+    >>> force_n = np.gradient(4 * v, t_s) + 30 * v + 6 * np.sign(v)
+    >>> x = 0.06 * np.sin(5 * t_s) + 0.1 * np.sin(2 * t_s)
+    >>> log = Log(t_s=t_s, position_m=x, force_n=force_n)
+    >>> joint = JointFile.from_fit(identify_inertia_friction(log), log)
+    >>> list(joint.scenario_changes())
+    ['part.mass_kg', 'joint.coulomb_n', 'joint.viscous_n_s_per_m']
+
+    """
+
+    provenance: Provenance
+    part: Part
+    joint: Joint
+    rig: Rig
+    standard_error: StandardError
+    asymmetric: Asymmetric
+    relative_force_error_percent: RelativeForceError
+    not_identified: dict[str, str]
+
+    @classmethod
+    def from_fit(cls, fit: InertiaFrictionFit, log: Log) -> JointFile:
+        """Gather the figures of ``fit``, which was made from ``log``.
+
+        Raises
+        ------
+        LogError
+            A symmetric friction parameter is negative: no joint file holds such a joint.
+
+        """
+        both = fit.symmetric
+        for name, value in (
+            ("coulomb_n", both.coulomb_n),
+            ("viscous_n_s_per_m", both.viscous_n_s_per_m),
+        ):
+            if value < 0.0:
+                raise LogError(
+                    f"{log.name}: {name} comes out as {value:.4g} ± "
+                    f"{both.standard_error[name]:.2g}; a joint file holds values of at least 0: "
+                    "record a log whose speeds span a wider range"
+                )
+        names = tuple(AsymmetricParameters.model_fields)
+        each = {name: getattr(fit.asymmetric, name) for name in names}
+        return cls(
+            provenance=Provenance(
+                log=log.name,
+                log_sha256=log.sha256,
+                breakaway_version=_version(),
+                method=METHOD,
+                settings=Settings(
+                    lowpass_hz=fit.lowpass_hz,
+                    decimation=fit.decimation,
+                    sample_rate_hz=fit.sample_rate_hz,
+                    trimmed_samples=fit.trimmed_samples,
+                ),
+                samples=both.samples,
+                notes=list(fit.notes),
+            ),
+            part=Part(mass_kg=both.mass_kg),
+            joint=Joint(coulomb_n=both.coulomb_n, viscous_n_s_per_m=both.viscous_n_s_per_m),
+            rig=Rig(offset_n=both.offset_n),
+            standard_error=StandardError.model_validate(dict(both.standard_error)),
+            asymmetric=Asymmetric.model_validate(
+                {**each, "standard_error": dict(fit.asymmetric.standard_error)}
+            ),
+            relative_force_error_percent=RelativeForceError(
+                symmetric=both.relative_force_error_percent,
+                asymmetric=fit.asymmetric.relative_force_error_percent,
+            ),
+            not_identified=dict(fit.not_identified),
+        )
+
+    def scenario_changes(self) -> dict[str, float]:
+        """Return the fields of a scenario that this file sets, and their values."""
+        return {
+            "part.mass_kg": self.part.mass_kg,
+            "joint.coulomb_n": self.joint.coulomb_n,
+            "joint.viscous_n_s_per_m": self.joint.viscous_n_s_per_m,
+        }
+
+    def save(self, path: str | Path) -> None:
+        """Write the file whole or not at all: to a neighbor first, which then takes its place.
+
+        Raises
+        ------
+        OutputError
+            The folder is missing or can not be written, or ``path`` is a folder.
+
+        """
+        target = Path(path)
+        text = tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
+        temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+        try:
+            try:
+                temporary.write_text(text, encoding="utf-8", newline="\n")
+                temporary.replace(target)
+            finally:
+                temporary.unlink(missing_ok=True)
+        except OSError as error:
+            raise OutputError(
+                f"{target}: can not be written ({error.strerror or error}); give a file in a "
+                "folder that exists and that you may write to"
+            ) from None
+
+    @classmethod
+    def load(cls, path: str | Path) -> JointFile:
+        """Read a joint file.
+
+        Raises
+        ------
+        ScenarioError
+            The file is missing, not TOML, lacks a key, has one too many, or has a value out of
+            range; each is named.
+
+        """
+        source = Path(path)
+        try:
+            content = tomllib.loads(source.read_bytes().decode("utf-8"))
+        except FileNotFoundError:
+            raise ScenarioError(f"{source}: there is no such file; check the path") from None
+        except OSError as error:
+            raise ScenarioError(f"{source}: can not be read ({error})") from None
+        except ValueError as error:
+            raise ScenarioError(
+                f"{source.name}: is not a TOML file ({error}); write it anew with JointFile.save"
+            ) from None
+        try:
+            return cls.model_validate(content)
+        except ValidationError as error:
+            faults = [
+                f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']} (it is "
+                f"{str(fault['input'])[:60]!r})"
+                for fault in error.errors()
+            ]
+            raise ScenarioError(
+                f"{source.name}: {'; '.join(faults)}; put these keys right, or identify anew"
+            ) from None
+
+
+def _version() -> str:
+    """Return the installed version, or say that there is none (a source tree on the path)."""
+    try:
+        return version("breakaway")
+    except PackageNotFoundError:
+        return "not installed"

@@ -1,0 +1,157 @@
+"""The joint file keeps what was identified, whole or not at all, and refuses damage by name."""
+
+import tomllib
+from dataclasses import replace
+from importlib.metadata import PackageNotFoundError
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from breakaway.errors import LogError, OutputError, ScenarioError
+from breakaway.identify import InertiaFrictionFit, JointFile, identify_inertia_friction, joint_file
+from breakaway.logs import Log
+
+
+@pytest.fixture(scope="module")
+def log() -> Log:
+    t_s = np.arange(4000) / 1000.0
+    v = 0.3 * np.cos(3 * t_s) + 0.35 * np.cos(7 * t_s + 1)
+    a = -0.9 * np.sin(3 * t_s) - 2.45 * np.sin(7 * t_s + 1)
+    return Log(
+        t_s=t_s,
+        position_m=0.1 * np.sin(3 * t_s) + 0.05 * np.sin(7 * t_s + 1),
+        force_n=5.0 * a + 20.0 * v + 4.0 * np.sign(v) + 1.0,
+        source=Path("some/where/motor.csv"),
+        sha256="ab" * 32,
+    )
+
+
+@pytest.fixture(scope="module")
+def fit(log: Log) -> InertiaFrictionFit:
+    return identify_inertia_friction(log)
+
+
+@pytest.fixture(scope="module")
+def joint(fit: InertiaFrictionFit, log: Log) -> JointFile:
+    return JointFile.from_fit(fit, log)
+
+
+def test_gathers_the_fit(joint: JointFile, fit: InertiaFrictionFit) -> None:
+    assert joint.part.mass_kg == fit.symmetric.mass_kg
+    assert joint.rig.offset_n == fit.symmetric.offset_n
+    assert joint.standard_error.coulomb_n == fit.symmetric.standard_error["coulomb_n"]
+    assert joint.asymmetric.coulomb_negative_n == fit.asymmetric.coulomb_negative_n
+    assert joint.asymmetric.standard_error.mass_kg == fit.asymmetric.standard_error["mass_kg"]
+    assert joint.relative_force_error_percent.asymmetric == (
+        fit.asymmetric.relative_force_error_percent
+    )
+    assert joint.provenance.log == "motor.csv"
+    assert joint.provenance.log_sha256 == "ab" * 32
+    assert joint.provenance.settings.lowpass_hz == 100.0
+    assert joint.not_identified == fit.not_identified
+
+
+def test_changes_three_fields_of_a_scenario(joint: JointFile, fit: InertiaFrictionFit) -> None:
+    assert joint.scenario_changes() == {
+        "part.mass_kg": fit.symmetric.mass_kg,
+        "joint.coulomb_n": fit.symmetric.coulomb_n,
+        "joint.viscous_n_s_per_m": fit.symmetric.viscous_n_s_per_m,
+    }
+    assert not set(joint.scenario_changes()) & set(joint.not_identified)
+
+
+def test_comes_back_as_it_was_saved(joint: JointFile, tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    joint.save(path)
+    joint.save(str(path))
+    assert JointFile.load(path) == joint
+    assert [entry.name for entry in tmp_path.iterdir()] == ["joint.toml"]
+    assert "some/where" not in path.read_text()
+    assert tomllib.loads(path.read_text())["not_identified"]["joint.stiction_n"]
+
+
+def test_a_log_without_a_file_has_no_digest(
+    fit: InertiaFrictionFit, log: Log, tmp_path: Path
+) -> None:
+    joint = JointFile.from_fit(fit, replace(log, source=None, sha256=None))
+    joint.save(tmp_path / "joint.toml")
+    assert "log_sha256" not in (tmp_path / "joint.toml").read_text()
+    assert JointFile.load(tmp_path / "joint.toml").provenance.log_sha256 is None
+
+
+def test_names_the_version(
+    fit: InertiaFrictionFit, log: Log, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(joint_file, "version", lambda _: "9.8.7")
+    assert JointFile.from_fit(fit, log).provenance.breakaway_version == "9.8.7"
+
+    def absent(name: str) -> str:
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr(joint_file, "version", absent)
+    assert JointFile.from_fit(fit, log).provenance.breakaway_version == "not installed"
+
+
+@pytest.mark.parametrize("name", ["coulomb_n", "viscous_n_s_per_m"])
+def test_refuses_negative_friction(fit: InertiaFrictionFit, log: Log, name: str) -> None:
+    symmetric = replace(fit.symmetric, **{name: -3.0})
+    with pytest.raises(LogError, match=rf"motor\.csv: {name} comes out as -3 ± .*wider range"):
+        JointFile.from_fit(replace(fit, symmetric=symmetric), log)
+
+
+def test_refuses_to_save_where_it_can_not(joint: JointFile, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder").mkdir()
+    for place in ("none/joint.toml", "file/joint.toml", "folder"):
+        with pytest.raises(OutputError, match="can not be written"):
+            joint.save(tmp_path / place)
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder"]
+
+
+def test_a_failed_save_leaves_the_old_file(
+    joint: JointFile, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "joint.toml"
+    path.write_text("old")
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(OutputError, match="No space left on device"):
+        joint.save(path)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[part]\nmass_kg = ", "[part]\nmass_kg = -", r"part\.mass_kg: .*greater than 0"),
+        ("[part]\nmass_kg = ", "[part]\nmass = 1\nmass_kg = ", r"part\.mass: Extra inputs"),
+        ("[rig]\noffset_n", "[rig]\nother_n", r"rig\.offset_n: Field required"),
+        ("decimation = 10", 'decimation = "10"', r"settings\.decimation: .*valid integer"),
+        ("lowpass_hz = 100.0", "lowpass_hz = nan", r"settings\.lowpass_hz: .*finite number"),
+        ("[part]", "[part", "is not a TOML file"),
+    ],
+)
+def test_refuses_a_damaged_file(
+    joint: JointFile, tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    path = tmp_path / "joint.toml"
+    joint.save(path)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    with pytest.raises(ScenarioError, match=rf"joint\.toml: .*{words}"):
+        JointFile.load(path)
+
+
+def test_refuses_what_is_no_joint_file(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match="there is no such file"):
+        JointFile.load(tmp_path / "none.toml")
+    with pytest.raises(ScenarioError, match="can not be read"):
+        JointFile.load(tmp_path)
+    (tmp_path / "joint.toml").write_bytes(b"\xff\xfe")
+    with pytest.raises(ScenarioError, match="is not a TOML file"):
+        JointFile.load(tmp_path / "joint.toml")

@@ -1,0 +1,169 @@
+"""The CSV reader reads what its header states, and refuses all else by name."""
+
+import hashlib
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from breakaway.errors import LogError
+from breakaway.logs import Log, read_csv, read_log
+
+SEALS = Path(__file__).parents[2] / "../shared/data/seals"
+
+Write = Callable[..., Path]
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    def _write(text: str | bytes) -> Path:
+        path = tmp_path / "motor.csv"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    return _write
+
+
+def table(header: str = "t_s,position_m,force_n", **changed: str) -> str:
+    """Return 20 good rows, of which ``row5="..."`` changes the fifth."""
+    rows = [changed.get(f"row{k}", f"{k / 100},{k * 1e-4},2.5") for k in range(1, 21)]
+    return "\n".join([header, *rows]) + "\n"
+
+
+def test_reads_the_columns(write: Write) -> None:
+    path = write(table())
+    log = read_log(path, format="csv")
+    np.testing.assert_allclose(log.t_s, np.arange(1, 21) / 100)
+    np.testing.assert_allclose(log.position_m, np.arange(1, 21) * 1e-4)
+    np.testing.assert_array_equal(log.force_n, 2.5)
+    assert (log.source, log.ignored_columns, log.reference_m) == (path, (), None)
+    assert log.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        table("T_s, x_m ,force_N"),
+        table().replace("\n", "\r\n"),
+        "\ufeff" + table() + "\n\n",
+        table('"t_s","position_m","force_n"', row3='"0.03","3e-4"," 2.5 "'),
+    ],
+    ids=["names", "windows", "bom and empty end", "quotes"],
+)
+def test_reads_the_same_from_other_spellings(write: Write, text: str) -> None:
+    log = read_csv(write(text))
+    np.testing.assert_allclose(log.position_m, np.arange(1, 21) * 1e-4)
+    np.testing.assert_array_equal(log.force_n, 2.5)
+
+
+def test_lists_the_columns_that_it_does_not_read(write: Write) -> None:
+    rows = "".join(f"off,{k},{k / 9},{-k},{2 * k}\n" for k in range(12))
+    log = read_csv(write("state,x_m,t_s,force_n,reference_m\n" + rows))
+    assert log.ignored_columns == ("state",)
+    np.testing.assert_array_equal(log.force_n, -np.arange(12.0))
+    np.testing.assert_array_equal(log.reference_m, 2.0 * np.arange(12.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "motor.csv: the file is empty"),
+        ("\n\r\n", "holds only empty lines"),
+        (b"t_s,position_m,force_n\n\xff\xfe", "byte 24 is not UTF-8"),
+        (table("time,position_m,force_n"), "column 't_s' is missing; present are time, "),
+        (table("t_s,position_mm,force_n"), "'position_m' is missing; the nearest .*'position_mm'"),
+        (table("t_s,position_m,Force_kN"), "'force_n' is missing; the nearest .*'Force_kN'"),
+        (table("t_s,x_m,position_m"), "columns 'x_m' and 'position_m' both give 'position_m'"),
+        (table().replace(",", ";"), "one cell; columns must be separated by commas"),
+        (table(row5="0.05,n/a,2.5"), "column 'position_m', row 5: 'n/a' is not a number"),
+        (table(row5="0.05,,2.5"), "column 'position_m', row 5: '' is not a number"),
+        (table(row5="0.05,1_0,2.5"), "row 5: '1_0' is not a number"),
+        (table(row5="0.05,٣,2.5"), "row 5: '٣' is not a number"),
+        (table(row7="0.07,0.1,nan"), "column 'force_n', row 7: 'nan' is not finite"),
+        (table(row7="0.07,0.1,-inf"), "column 'force_n', row 7: '-inf' is not finite"),
+        (table(row7="1e999,0.1,1"), "column 't_s', row 7: '1e999' is not finite"),
+        (table(row7="0.07,1e15,1"), r"column 'position_m', row 7: 1e\+15 is not a measurement"),
+        (table(row9="0.09,0.1"), "row 9: 2 cells where the header has 3"),
+        (table(row9="0.09,0.1,1,2"), "row 9: 4 cells where the header has 3"),
+        (table(row9=""), "row 9: 0 cells where the header has 3"),
+        (table(row9='0.09,0.1,"2'), "is not comma-separated text"),
+        (table(row9="0.08,0.1,1"), "column 't_s', row 9: 0.08 s repeats 0.08 s"),
+        (table(row9="0.01,0.1,1"), "column 't_s', row 9: 0.01 s goes back from 0.08 s"),
+        ("t_s,position_m,force_n\n0,0,0\n1,1,1\n", "2 rows; a log needs at least 10"),
+        ("t_s,position_m,force_n\n", "0 rows; a log needs at least 10"),
+    ],
+)
+def test_refuses(write: Write, text: str | bytes, words: str) -> None:
+    with pytest.raises(LogError, match=words):
+        read_csv(write(text))
+
+
+def test_refuses_what_is_no_file(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match=r"none\.csv: there is no such file"):
+        read_csv(tmp_path / "none.csv")
+    with pytest.raises(LogError, match="can not be read"):
+        read_csv(tmp_path)
+    with pytest.raises(LogError, match="can not be read"):
+        read_csv(Path("nul\0.csv"))
+
+
+def test_refuses_an_unknown_format(write: Write) -> None:
+    with pytest.raises(LogError, match="format 'tdms' is unknown; it must be one of csv, emps"):
+        read_log(write(table()), format="tdms")
+
+
+def read(data: bytes) -> Log | None:
+    """Return the log in ``data``, or None where it is refused; anything else escapes."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "fuzz.csv"
+        path.write_bytes(data)
+        try:
+            return read_csv(path)
+        except LogError:
+            return None
+
+
+def assert_is_a_log(log: Log | None) -> None:
+    if log is not None:
+        assert log.rows >= 10
+        assert np.all(np.diff(log.t_s) > 0)
+        assert np.all(np.isfinite(log.position_m) & np.isfinite(log.force_n))
+
+
+@given(st.binary(max_size=300))
+@example(b"\0")
+@example(b"\xef\xbb\xbf")
+def test_any_bytes_are_read_or_refused(data: bytes) -> None:
+    assert_is_a_log(read(data))
+
+
+CELL = st.one_of(
+    st.floats().map(repr), st.integers().map(str), st.sampled_from(["", '"', "1_0", "x", "\r"])
+)
+
+
+@given(st.lists(st.lists(CELL, min_size=2, max_size=4), max_size=14))
+def test_any_table_is_read_or_refused(rows: list[list[str]]) -> None:
+    text = "\n".join(["t_s,position_m,force_n", *(",".join(row) for row in rows)])
+    assert_is_a_log(read(text.encode()))
+
+
+@given(st.lists(st.tuples(*[st.floats(-1e9, 1e9)] * 3), min_size=10, max_size=30))
+def test_what_was_written_is_read(rows: list[tuple[float, float, float]]) -> None:
+    text = "t_s,position_m,force_n\n"
+    text += "".join(f"{k},{x!r},{force!r}\n" for k, (_, x, force) in enumerate(rows))
+    log = read(text.encode())
+    assert log is not None
+    np.testing.assert_array_equal(log.position_m, [x for _, x, _ in rows])
+    np.testing.assert_array_equal(log.force_n, [force for _, _, force in rows])
+
+
+@pytest.mark.skipif(not SEALS.is_dir(), reason="the measured logs (../shared/data) are absent")
+def test_reads_a_measured_log_with_its_gap() -> None:
+    log = read_csv(SEALS / "KDN_1bar.csv")
+    assert (log.rows, log.ignored_columns) == (6857, ("pressure_Pa", "friction_N"))
+    assert np.diff(log.t_s).max() > 0.2
