@@ -5,9 +5,13 @@
 #![deny(unsafe_code)]
 
 pub mod draws;
+pub mod figures;
+pub mod imposed;
 pub mod lanes;
 pub mod run;
 
 pub use draws::HeldDraws;
+pub use figures::FIGURES;
+pub use imposed::{ImposedMotion, imposed_motion};
 pub use lanes::Lanes;
-pub use run::{Job, Run, TRACE_COLUMNS, run};
+pub use run::{Job, Run, TRACE_COLUMNS, Trace, run};

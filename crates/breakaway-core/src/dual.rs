@@ -71,7 +71,8 @@ impl<R: Real, const P: usize> Mul for Dual<R, P> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
+        let slope = |a: R, b: R| a.mul_add(other.value, self.value * b);
+        self.zip(other, self.value * other.value, slope)
     }
 }
 

@@ -176,3 +176,31 @@ impl<R: Real> Plant<'_, R> {
         joint_force
     }
 }
+
+/// A step of `h` seconds with the motion imposed instead of the force, as on a test rig: velocity
+/// `v` in m/s over the step. Gives the joint force in N at the middle of the step, undisturbed.
+///
+/// ```text
+/// z_m = (z + k α v) / (1 + k A / g),   k = h / 2
+/// ```
+///
+/// The midpoint rule again, second order and stable for any step. The velocity of `state` is set
+/// to `v`. Beyond the end of the guide the force is zero.
+#[inline(always)]
+pub fn impose_motion<R: Real>(joint: &Joint<R>, state: &mut PlantState<R>, v: R, h: R) -> R {
+    let (zero, one) = (R::zero(), R::one());
+    let settled = joint.settle(state.joint(), state.position_m, v, one);
+    (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
+    let k = R::constant(0.5) * h;
+    let x_mid = k.mul_add(v, state.position_m);
+    let b = joint.freeze(&settled, x_mid, v, one);
+    let relaxed = one + k * b.relaxation / b.friction_level_n;
+    let z_mid = (k * b.stretch).mul_add(v, state.bristle_m) / relaxed;
+    let engaged = x_mid.lt(joint.engagement_length_m());
+    let force = R::select(engaged, b.force(v, z_mid, b.rate(v, z_mid)), zero);
+    state.bristle_m = R::select(engaged, R::constant(2.0) * z_mid - state.bristle_m, zero);
+    state.position_m = h.mul_add(v, state.position_m);
+    state.velocity_m_per_s = v;
+    state.joint_force_n = force;
+    force
+}

@@ -1,1 +1,85 @@
-//! b
+//! Python binding: converts values and maps errors. No loops, no defaults, no physics.
+
+mod error;
+mod job;
+
+use breakaway_batch::{FIGURES, Run, TRACE_COLUMNS, imposed_motion, run};
+use breakaway_core::Outcome;
+use breakaway_core::joint::Joint;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+/// Runs one extraction. Gives (outcome, figures by name, trace columns by name as bytes of f64).
+#[pyfunction]
+fn run_one<'py>(
+    py: Python<'py>,
+    job: &Bound<'py, PyAny>,
+) -> PyResult<(&'static str, Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+    let job = job::read(job)?;
+    let finished = py.detach(|| run(&job, || Python::attach(|py| py.check_signals())))?;
+    let figures = PyDict::new(py);
+    for (name, figure) in FIGURES {
+        figures.set_item(name, figure(&job, &finished))?;
+    }
+    Ok((outcome_name(finished.outcome), figures, trace_columns(py, &finished)?))
+}
+
+fn outcome_name(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Released => "released",
+        Outcome::NotReleased => "not_released",
+        Outcome::Diverged => "diverged",
+        Outcome::LimitExceeded => "limit_exceeded",
+    }
+}
+
+fn trace_columns<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    for (name, values) in TRACE_COLUMNS.iter().zip(&run.trace) {
+        columns.set_item(name, as_bytes(py, values)?)?;
+    }
+    Ok(columns)
+}
+
+fn as_bytes<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyBytes>> {
+    PyBytes::new_with(py, values.len() * 8, |buffer| {
+        for (slot, value) in buffer.chunks_exact_mut(8).zip(values) {
+            slot.copy_from_slice(&value.to_ne_bytes());
+        }
+        Ok(())
+    })
+}
+
+/// Imposes velocities on a joint. Gives position, bristle and joint force as bytes of f64.
+#[pyfunction]
+fn impose<'py>(
+    py: Python<'py>,
+    joint: &Bound<'py, PyAny>,
+    start_m: f64,
+    period_s: f64,
+    velocities_m_per_s: Vec<f64>,
+) -> PyResult<[Bound<'py, PyBytes>; 3]> {
+    let joint: Joint<f64> = pythonize::depythonize(joint).map_err(error::unreadable)?;
+    let motion = py.detach(|| imposed_motion(&joint, start_m, period_s, &velocities_m_per_s));
+    Ok([
+        as_bytes(py, &motion.position_m)?,
+        as_bytes(py, &motion.bristle_m)?,
+        as_bytes(py, &motion.joint_force_n)?,
+    ])
+}
+
+/// F_s(x) in N, equation (5).
+#[pyfunction]
+fn breakaway_force(joint: &Bound<'_, PyAny>, position_m: f64) -> PyResult<f64> {
+    let joint: Joint<f64> = pythonize::depythonize(joint).map_err(error::unreadable)?;
+    Ok(joint.breakaway_force(position_m))
+}
+
+/// The compiled core of breakaway.
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(run_one, module)?)?;
+    module.add_function(wrap_pyfunction!(impose, module)?)?;
+    module.add_function(wrap_pyfunction!(breakaway_force, module)?)
+}

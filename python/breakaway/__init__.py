@@ -1,0 +1,149 @@
+"""Free seized parts: identify a joint, design a controller, simulate the extraction.
+
+>>> import breakaway as bk
+>>> run = bk.simulate(bk.load_scenario("paper_as_computed"))
+>>> str(run.outcome)
+'released'
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from breakaway._core import __version__
+from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioError
+
+if TYPE_CHECKING:
+    from breakaway import design
+    from breakaway.imposed import ImposedMotion, impose_motion
+    from breakaway.identify import JointFile, identify_inertia_friction
+    from breakaway.logs import Log, read_log
+    from breakaway.resolve import resolve
+    from breakaway.run import Outcome, Run, RunMetrics
+    from breakaway.scenario import (
+        FmPulses,
+        FmVibration,
+        Gains,
+        IdealActuator,
+        Limits,
+        Lugre,
+        MinimumJerk,
+        Part,
+        Pid,
+        PidSettings,
+        PolePlacement,
+        PushOnlyActuator,
+        RampReference,
+        Scenario,
+        StepReference,
+        Timing,
+        Trace,
+        TrapezoidalVelocity,
+        TwoRegion,
+        TwoStep,
+        UniformDisturbance,
+        load_scenario,
+        preset_names,
+        save_scenario,
+        scenario_schema,
+    )
+    from breakaway.simulate import simulate
+
+# Where each public name lives; loaded on first use, so that `import breakaway` stays quick.
+_HOMES = {
+    "breakaway.identify": ("JointFile", "identify_inertia_friction"),
+    "breakaway.imposed": ("ImposedMotion", "impose_motion"),
+    "breakaway.logs": ("Log", "read_log"),
+    "breakaway.resolve": ("resolve",),
+    "breakaway.run": ("Outcome", "Run", "RunMetrics"),
+    "breakaway.scenario": (
+        "FmPulses",
+        "FmVibration",
+        "Gains",
+        "IdealActuator",
+        "Limits",
+        "Lugre",
+        "MinimumJerk",
+        "Part",
+        "Pid",
+        "PidSettings",
+        "PolePlacement",
+        "PushOnlyActuator",
+        "RampReference",
+        "Scenario",
+        "StepReference",
+        "Timing",
+        "Trace",
+        "TrapezoidalVelocity",
+        "TwoRegion",
+        "TwoStep",
+        "UniformDisturbance",
+        "load_scenario",
+        "preset_names",
+        "save_scenario",
+        "scenario_schema",
+    ),
+    "breakaway.simulate": ("simulate",),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "BreakawayError",
+    "FmPulses",
+    "FmVibration",
+    "Gains",
+    "IdealActuator",
+    "ImposedMotion",
+    "JointFile",
+    "Limits",
+    "Log",
+    "LogError",
+    "Lugre",
+    "MinimumJerk",
+    "Outcome",
+    "OutputError",
+    "Part",
+    "Pid",
+    "PidSettings",
+    "PolePlacement",
+    "PushOnlyActuator",
+    "RampReference",
+    "Run",
+    "RunMetrics",
+    "Scenario",
+    "ScenarioError",
+    "StepReference",
+    "Timing",
+    "Trace",
+    "TrapezoidalVelocity",
+    "TwoRegion",
+    "TwoStep",
+    "UniformDisturbance",
+    "__version__",
+    "design",
+    "identify_inertia_friction",
+    "impose_motion",
+    "load_scenario",
+    "preset_names",
+    "read_log",
+    "resolve",
+    "save_scenario",
+    "scenario_schema",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the name stands for
+    if name == "design":
+        return importlib.import_module("breakaway.design")
+    home = _HOME_OF.get(name)
+    if home is None:
+        raise AttributeError(f"module 'breakaway' has no attribute {name!r}")
+    value = getattr(importlib.import_module(home), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

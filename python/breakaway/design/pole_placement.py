@@ -1,0 +1,144 @@
+"""PID gains from a joint by pole placement (section 4.1 of the paper, misprints put right)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from breakaway.errors import ScenarioError
+from breakaway.scenario.joint import SeizedJoint
+
+GRAVITY_M_PER_S2 = 9.81
+"""Standard gravity, as rounded by the paper's own gains."""
+
+
+@dataclass(frozen=True)
+class PidGains:
+    """Gains of ``F = kp e + ki integral(e) + kd de/dt``."""
+
+    kp: float
+    """Proportional gain, in N/m."""
+    ki: float
+    """Integral gain, in N/(m s)."""
+    kd: float
+    """Derivative gain, in N s/m."""
+
+
+@dataclass(frozen=True)
+class GainSet:
+    """The gains for a stuck joint, for a sliding one, and their weighted sum."""
+
+    static: PidGains
+    """For the stuck joint: equation (10) with the poles of (11)."""
+    dynamic: PidGains
+    """For the sliding joint: equation (13) with the poles of (11)."""
+    total: PidGains
+    """``static_share * static + (1 - static_share) * dynamic``: the gains that run."""
+    natural_frequency_rad_per_s: float
+    """omega, from the settling time."""
+
+
+def residual_n(joint: SeizedJoint, mass_kg: float) -> float:
+    """Friction left at the end of the guide, in N: the joint's own, or the weight m g."""
+    return mass_kg * GRAVITY_M_PER_S2 if joint.residual_n is None else joint.residual_n
+
+
+def pole_placement(
+    joint: SeizedJoint,
+    *,
+    mass_kg: float,
+    settling_time_s: float,
+    damping_ratio: float,
+    pole_per_s: float,
+    static_share: float = 0.1,
+) -> GainSet:
+    """Place the closed-loop poles at ``(s + a)(s**2 + 2 eps w s + w**2)``, equation (11).
+
+    With w = 4 / (eps t_s), the 2 % settling time::
+
+        static   kp = (w**2 + 2 a eps w) m - k_e     kd = (2 eps w + a) m - c    ki = a w**2 m
+        dynamic  m2 = (F_c0 - m g) / l_f                                                    (12)
+                 kp = (w**2 + 2 a eps w) m / m2 - 1  kd = (2 eps w + a) m / m2   ki = a w**2 m / m2
+        total    0.1 static + 0.9 dynamic
+
+    Misprints put right: the paper prints w**2 twice in the static kp, and ``- eps`` in place of
+    ``- c`` in the static kd; (11) lacks an s.
+
+    Parameters
+    ----------
+    joint : Lugre or TwoRegion
+        Its stiffness k_e, damping c, Coulomb force F_c0, length l_f and residual force are used.
+    mass_kg : float
+        m, above 0.
+    settling_time_s : float
+        t_s, above 0.
+    damping_ratio : float
+        eps, above 0.
+    pole_per_s : float
+        a, above 0.
+    static_share : float, optional
+        Share of the static gains in the total, 0 to 1.
+
+    Returns
+    -------
+    GainSet
+
+    Raises
+    ------
+    ScenarioError
+        A parameter is out of range, or F_c0 does not exceed the residual force.
+
+    Notes
+    -----
+    Not checked: that the *total* gains are stable in either regime. They place the poles of
+    neither; see `breakaway.design.stability`.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> joint = bk.load_scenario("paper_as_computed").joint
+    >>> gains = bk.design.pole_placement(
+    ...     joint, mass_kg=1.0, settling_time_s=5e-4, damping_ratio=1.0, pole_per_s=200.0)
+    >>> round(gains.total.kp / 1000, 1)  # Table II prints 3137.3
+    3137.3
+
+    """
+    _check_positive(
+        mass_kg=mass_kg,
+        settling_time_s=settling_time_s,
+        damping_ratio=damping_ratio,
+        pole_per_s=pole_per_s,
+    )
+    if not 0.0 <= static_share <= 1.0:
+        raise ScenarioError(f"static_share: {static_share!r} is not within 0 to 1")
+    end_n = residual_n(joint, mass_kg)
+    if joint.coulomb_n <= end_n:
+        raise ScenarioError(
+            f"joint.coulomb_n: {joint.coulomb_n!r} is not > the residual force {end_n:.6g} N, so "
+            "friction does not fall along the guide and equation (12) gives no dynamic gains; "
+            "give the gains as numbers"
+        )
+    a, m = pole_per_s, mass_kg
+    w = 4.0 / (damping_ratio * settling_time_s)
+    second_order = 2.0 * damping_ratio * w
+    k_wanted, c_wanted, ki = (w * w + a * second_order) * m, (second_order + a) * m, a * w * w * m
+    m2 = (joint.coulomb_n - end_n) / joint.engagement_length_m
+    static = PidGains(
+        kp=k_wanted - joint.stiffness_n_per_m, ki=ki, kd=c_wanted - joint.damping_n_s_per_m
+    )
+    dynamic = PidGains(kp=k_wanted / m2 - 1.0, ki=ki / m2, kd=c_wanted / m2)
+    return GainSet(static, dynamic, _weighted(static_share, static, dynamic), w)
+
+
+def _weighted(share: float, static: PidGains, dynamic: PidGains) -> PidGains:
+    rest = 1.0 - share
+    return PidGains(
+        kp=share * static.kp + rest * dynamic.kp,
+        ki=share * static.ki + rest * dynamic.ki,
+        kd=share * static.kd + rest * dynamic.kd,
+    )
+
+
+def _check_positive(**values: float) -> None:
+    for name, value in values.items():
+        if not 0.0 < value < float("inf"):
+            raise ScenarioError(f"{name}: {value!r} is not > 0 and finite; give a number > 0")

@@ -1,0 +1,105 @@
+"""Stability of a PID loop around a joint, stuck and sliding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from breakaway.design.pole_placement import PidGains
+from breakaway.scenario.joint import Lugre, SeizedJoint
+
+
+@dataclass(frozen=True)
+class LoopStability:
+    """A verdict on one linear loop, with its reason."""
+
+    stable: bool
+    """Whether all closed-loop poles lie in the left half plane."""
+    poles_per_s: tuple[complex, ...]
+    """Closed-loop poles, in 1/s."""
+    reason: str
+    """The Routh-Hurwitz condition, in numbers."""
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Verdicts for both regimes, and on self-excited oscillation."""
+
+    stuck: LoopStability
+    """Around the bristle's spring and damper."""
+    sliding: LoopStability
+    """Around a mass on which friction is constant."""
+    stribeck: str
+    """What the falling friction curve does to the sliding loop at low speed."""
+
+
+def stability(gains: PidGains, joint: SeizedJoint, mass_kg: float) -> Stability:
+    """Judge a continuous PID loop around a joint by Routh and Hurwitz.
+
+    The loop ``m x'' + (c + kd) x' + (k_e + kp) x + ki integral(x) = 0`` (stuck; sliding without c
+    and k_e) has the characteristic polynomial ``s**3 + a2 s**2 + a1 s + a0``. It is stable if and
+    only if all coefficients are positive and ``a2 a1 > a0``.
+
+    Parameters
+    ----------
+    gains : PidGains
+        The gains that run.
+    joint : Lugre or TwoRegion
+        The joint.
+    mass_kg : float
+        m, above 0.
+
+    Notes
+    -----
+    Not modeled: sampling and hold, delay, the transition between the regimes. The verdict for
+    sliding ignores the Stribeck slope, which `Stability.stribeck` compares with kd.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> joint = bk.load_scenario("paper_as_computed").joint
+    >>> vibrating = bk.design.PidGains(kp=828.2e3, ki=823940e3, kd=662.5)  # Table II
+    >>> verdict = bk.design.stability(vibrating, joint, mass_kg=1.0)
+    >>> verdict.stuck.stable, verdict.sliding.stable
+    (True, False)
+
+    """
+    k_e, c = joint.stiffness_n_per_m, joint.damping_n_s_per_m
+    return Stability(
+        stuck=_routh_hurwitz(c + gains.kd, k_e + gains.kp, gains.ki, mass_kg),
+        sliding=_routh_hurwitz(gains.kd, gains.kp, gains.ki, mass_kg),
+        stribeck=_stribeck_verdict(gains.kd, joint),
+    )
+
+
+def _routh_hurwitz(damping: float, stiffness: float, ki: float, mass_kg: float) -> LoopStability:
+    a2, a1, a0 = damping / mass_kg, stiffness / mass_kg, ki / mass_kg
+    poles = tuple(complex(p) for p in np.roots([1.0, a2, a1, a0]))
+    negative = [
+        f"{name} = {value:.4g}"
+        for name, value in (("damping", damping), ("stiffness", stiffness), ("ki", ki))
+        if value <= 0.0
+    ]
+    if negative:
+        return LoopStability(False, poles, f"not all coefficients are positive: {negative[0]}")
+    stable = a2 * a1 > a0
+    sign = ">" if stable else "<="
+    reason = f"damping x stiffness / m = {a2 * a1 * mass_kg:.4g} {sign} ki = {ki:.4g}"
+    return LoopStability(stable, poles, reason)
+
+
+def _stribeck_verdict(kd: float, joint: SeizedJoint) -> str:
+    """Compare kd with the steepest fall of g(v), at v = v_s / sqrt(2)."""
+    if not isinstance(joint, Lugre):
+        return "this law has no falling friction curve"
+    v_s = joint.stribeck_velocity_m_per_s
+    drop = joint.stiction_n - joint.coulomb_n
+    slope = float(np.sqrt(2.0 / np.e) * drop / v_s) - joint.viscous_n_s_per_m
+    at = v_s / np.sqrt(2.0)
+    if slope <= kd:
+        return f"steepest fall {slope:.4g} N s/m at {at:.3g} m/s, kd = {kd:.4g} damps it"
+    return (
+        f"steepest fall {slope:.4g} N s/m at {at:.3g} m/s exceeds kd = {kd:.4g}: expect "
+        "self-excited oscillation at low speed"
+    )

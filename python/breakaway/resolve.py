@@ -1,0 +1,108 @@
+"""Make every number of a scenario explicit, and hand it to the core."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from breakaway.design.pole_placement import pole_placement, residual_n
+from breakaway.scenario.controller import FmVibration, Gains, Pid, PidSettings, PolePlacement, TwoStep
+from breakaway.scenario.scenario import Scenario
+
+
+def resolve(scenario: Scenario) -> Scenario:
+    """Replace what a scenario leaves open by numbers: gains, residual force, limits.
+
+    The result runs bit-identically to the scenario, and on its own: designed gains stay as they
+    are when its joint is changed, as a controller does that does not know its part.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> bk.resolve(bk.load_scenario("paper_as_computed")).controller.gains.kind
+    'given'
+
+    """
+    joint, limits = scenario.joint, scenario.limits
+    explicit_joint = joint.model_copy(
+        update={"residual_n": residual_n(joint, scenario.part.mass_kg)}
+    )
+    explicit_limits = limits.model_copy(
+        update={
+            "diverged_error_m": limits.diverged_error_m or joint.engagement_length_m / 2,
+            "diverged_force_n": limits.diverged_force_n or 20 * joint.stiction_n,
+            "breakaway_travel_m": limits.breakaway_travel_m
+            or 2 * joint.stiction_n / joint.stiffness_n_per_m,
+        }
+    )
+    return scenario.model_copy(
+        update={
+            "joint": explicit_joint,
+            "limits": explicit_limits,
+            "controller": _with_gains(scenario),
+        }
+    )
+
+
+def _with_gains(scenario: Scenario) -> Pid | FmVibration | TwoStep:
+    controller = scenario.controller
+    if isinstance(controller, Pid):
+        return controller.model_copy(update={"gains": given_gains(controller.gains, scenario)})
+    update: dict[str, object] = {"pid": _pid_with_gains(controller.pid, scenario)}
+    if isinstance(controller, TwoStep):
+        update["vibration_gains"] = given_gains(controller.vibration_gains, scenario)
+    return controller.model_copy(update=update)
+
+
+def _pid_with_gains(pid: PidSettings, scenario: Scenario) -> PidSettings:
+    return pid.model_copy(update={"gains": given_gains(pid.gains, scenario)})
+
+
+def given_gains(gains: Gains | PolePlacement, scenario: Scenario) -> Gains:
+    """Give the gains as numbers, designed for the scenario's own joint where they are designed."""
+    if isinstance(gains, Gains):
+        return gains
+    total = pole_placement(
+        scenario.joint,
+        mass_kg=scenario.part.mass_kg,
+        settling_time_s=gains.settling_time_s,
+        damping_ratio=gains.damping_ratio,
+        pole_per_s=gains.pole_per_s,
+        static_share=gains.static_share,
+    ).total
+    return Gains(kp_n_per_m=total.kp, ki_n_per_m_s=total.ki, kd_n_s_per_m=total.kd)
+
+
+def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
+    """Values of a resolved scenario under the names of the core."""
+    values = resolved.model_dump()
+    timing, limits = values["timing"], values["limits"]
+    joint = values["joint"]
+    infinite = float("inf")
+    controller = values["controller"]
+    for gains in _gain_tables(controller):
+        del gains["kind"]
+    disturbance = values["disturbance"]
+    del disturbance["law"], timing["duration_s"]
+    release_position_m = joint["engagement_length_m"] - limits.pop("release_tolerance_m")
+    return {
+        "extraction": {
+            "joint": joint,
+            "part": values["part"],
+            "reference": values["reference"],
+            "disturbance": disturbance,
+            "actuator": values["actuator"],
+            "controller": controller,
+            "timing": timing,
+        },
+        "limits": {name: infinite if v is None else v for name, v in limits.items()}
+        | {"release_position_m": release_position_m},
+        "samples": resolved.samples,
+        "seed": resolved.seed,
+        "run": run,
+        "trace_every": resolved.trace.every_samples,
+    }
+
+
+def _gain_tables(controller: dict[str, Any]) -> list[dict[str, Any]]:
+    pid = controller.get("pid", controller)
+    return [pid["gains"]] + [controller[key] for key in ("vibration_gains",) if key in controller]

@@ -1,0 +1,83 @@
+"""Scenarios in files: load, save, presets, schema."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from breakaway.errors import ScenarioError
+from breakaway.output import write_atomically
+from breakaway.scenario.scenario import Scenario
+
+PRESETS = files("breakaway.presets")
+
+
+def preset_names() -> list[str]:
+    """Names of the presets that come with breakaway."""
+    return sorted(p.name.removesuffix(".toml") for p in PRESETS.iterdir() if p.name.endswith(".toml"))
+
+
+def load_scenario(source: str | Path) -> Scenario:
+    """Load a scenario: a preset by its name, or a TOML file by its path.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid; the message
+        names every such field.
+
+    Examples
+    --------
+    >>> load_scenario("paper_as_computed").joint.stiffness_n_per_m
+    36000000.0
+    >>> load_scenario("paper_as_computd")
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.ScenarioError: paper_as_computd: ... did you mean paper_as_computed?
+
+    """
+    if isinstance(source, str) and source in preset_names():
+        text = (PRESETS / f"{source}.toml").read_text(encoding="utf-8")
+        return parse_scenario(text, source)
+    return parse_scenario(_read(Path(source)), str(source))
+
+
+def parse_scenario(text: str, source: str) -> Scenario:
+    """Build a scenario from TOML; ``source`` names the text in errors."""
+    try:
+        return Scenario.parse(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise ScenarioError(f"{source}: is not TOML: {error}") from None
+    except ScenarioError as error:
+        raise ScenarioError(f"{source}:\n{error}" if "\n" in str(error) else f"{source}: {error}") from None
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        near = difflib.get_close_matches(str(path), preset_names(), n=1, cutoff=0.5)
+        hint = f"did you mean {near[0]}?" if near else f"presets: {', '.join(preset_names())}"
+        raise ScenarioError(f"{path}: is neither a file nor a preset; {hint}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"{path}: can not be read as text: {error}") from None
+
+
+def scenario_toml(scenario: Scenario) -> str:
+    """The scenario as TOML. Floats are written so that they read back bit for bit."""
+    return tomli_w.dumps(scenario.model_dump(exclude_none=True))
+
+
+def save_scenario(scenario: Scenario, path: str | Path) -> None:
+    """Write the scenario as TOML, whole or not at all."""
+    write_atomically(Path(path), scenario_toml(scenario).encode())
+
+
+def scenario_schema() -> dict[str, Any]:
+    """The JSON Schema of a scenario."""
+    return Scenario.model_json_schema()

@@ -1,0 +1,179 @@
+"""The whole scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, Field, model_validator
+
+from breakaway.errors import ScenarioError
+from breakaway.scenario.actuator import Actuator, IdealActuator
+from breakaway.scenario.controller import Controller, FmVibration, TwoStep
+from breakaway.scenario.disturbance import UniformDisturbance
+from breakaway.scenario.joint import Joint, Part
+from breakaway.scenario.model import Model
+from breakaway.scenario.reference import Reference
+from breakaway.scenario.run import Limits, Timing, Trace
+
+SAMPLES_MAX = 10_000_000_000
+"""Most integration steps of one run."""
+ROWS_MAX = 50_000_000
+"""Most rows of one trace."""
+
+
+class Scenario(Model):
+    """An extraction: joint, part, reference, disturbance, actuator, controller, and how to run it.
+
+    Scenarios do not change; `with_` gives a changed copy. Every number is checked here and only
+    here. Not checked: whether the controller is stable (see `breakaway.design.stability`).
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> scenario = bk.load_scenario("paper_as_computed")
+    >>> rough = scenario.with_(disturbance=bk.UniformDisturbance(var=0.05, hold_s=1e-4), seed=7)
+    >>> rough.disturbance.var, rough.seed, scenario.seed
+    (0.05, 7, 0)
+    >>> scenario.with_({"joint.stiction_n": -450})
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.ScenarioError: joint.stiction_n: -450 is not > 0; give a number > 0: ...
+
+    """
+
+    name: str = "scenario"
+    """A name for tables and figures."""
+    description: str = ""
+    """What the scenario is for."""
+    breakaway_version: str | None = None
+    """The version that wrote the file; told, not checked."""
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    """Seed of all random draws."""
+    joint: Joint
+    """The seized joint."""
+    part: Part
+    """The part in it."""
+    reference: Reference
+    """Where the part should be."""
+    disturbance: UniformDisturbance = UniformDisturbance()
+    """What is not known of the joint force."""
+    actuator: Actuator = IdealActuator()
+    """What pushes."""
+    controller: Controller
+    """What decides how hard."""
+    timing: Timing
+    """Duration, sampling and integration."""
+    limits: Limits = Limits()
+    """Where a run counts as diverged, released, loose, or too rough."""
+    trace: Trace = Trace()
+    """What is recorded."""
+
+    @property
+    def samples(self) -> int:
+        """Control samples of a run."""
+        return round(self.timing.duration_s / self.timing.control_period_s)
+
+    @model_validator(mode="after")
+    def _runs_whole_periods(self) -> Self:
+        duration, period = self.timing.duration_s, self.timing.control_period_s
+        ratio = duration / period
+        steps = ratio * self.timing.steps_per_period
+        if steps > SAMPLES_MAX:
+            raise ValueError(
+                f"timing.duration_s: {duration!r} takes {steps:.3g} integration steps, more than "
+                f"{SAMPLES_MAX:.0e}; shorten it or lengthen timing.control_period_s"
+            )
+        whole = max(1, round(ratio))
+        if abs(ratio - whole) > 1e-6:
+            raise ValueError(
+                f"timing.duration_s: {duration!r} is not a whole number of control periods of "
+                f"{period!r} s; give {whole * period!r}"
+            )
+        every = self.trace.every_samples
+        if every and ratio / every > ROWS_MAX:
+            raise ValueError(
+                f"trace.every_samples: {every!r} makes {ratio / every:.3g} rows, more than "
+                f"{ROWS_MAX:.0e}; give {int(ratio // ROWS_MAX) + 1} or more"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _holds_at_least_one_period(self) -> Self:
+        hold, period = self.disturbance.hold_s, self.timing.control_period_s
+        if hold < period * (1 - 1e-9):
+            raise ValueError(
+                f"disturbance.hold_s: {hold!r} is not >= timing.control_period_s = {period!r}; "
+                "the joint force is constant over a control period"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _samples_its_pulses(self) -> Self:
+        if not isinstance(self.controller, FmVibration | TwoStep):
+            return self
+        pulses, period = self.controller.vibration, self.timing.control_period_s
+        if pulses.frequency_max_hz >= 0.5 / period:
+            raise ValueError(
+                f"controller.vibration.frequency_max_hz: {pulses.frequency_max_hz!r} is not below "
+                f"the Nyquist frequency {0.5 / period:.6g} Hz of timing.control_period_s = "
+                f"{period!r}; sample faster or vibrate slower"
+            )
+        if pulses.pulse_width_s < 2 * period * (1 - 1e-9):
+            raise ValueError(
+                f"controller.vibration.pulse_width_s: {pulses.pulse_width_s!r} is not >= two "
+                f"control periods of {period!r} s; sample faster or widen the pulse"
+            )
+        return self
+
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Self:  # noqa: ANN401
+        """Give a changed copy.
+
+        Parameters
+        ----------
+        changes : mapping, optional
+            Values by dotted path, such as ``{"joint.stiction_n": 900.0}``.
+        **fields
+            New values of top-level fields: a model replaces the field, a mapping changes the
+            keys it names (and replaces the field where it names another law or kind).
+
+        Raises
+        ------
+        ScenarioError
+            The changed scenario is not valid, or a path leads nowhere.
+
+        """
+        values = self.model_dump()
+        for path, value in (changes or {}).items():
+            _set_path(values, path, _plain(value))
+        for name, value in fields.items():
+            values[name] = _merged(values.get(name), _plain(value), replace=_is_model(value))
+        return type(self).parse(values)
+
+
+def _is_model(value: object) -> bool:
+    return isinstance(value, BaseModel)
+
+
+def _plain(value: object) -> object:
+    return value.model_dump() if isinstance(value, BaseModel) else value
+
+
+def _merged(old: object, new: object, *, replace: bool) -> object:
+    if replace or not isinstance(old, dict) or not isinstance(new, Mapping):
+        return new
+    if any(tag in new and new[tag] != old.get(tag) for tag in ("law", "kind")):
+        return dict(new)
+    return {**old, **{k: _merged(old.get(k), _plain(v), replace=_is_model(v)) for k, v in new.items()}}
+
+
+def _set_path(values: dict[str, Any], path: str, value: object) -> None:
+    *parents, last = path.split(".")
+    for depth, name in enumerate(parents):
+        inner = values.get(name)
+        if not isinstance(inner, dict):
+            known = ", ".join(values)
+            where = ".".join(parents[: depth + 1])
+            raise ScenarioError(f"{where}: is not a table of the scenario; known keys: {known}")
+        values = inner
+    values[last] = value
