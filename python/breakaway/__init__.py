@@ -16,8 +16,8 @@ from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioErro
 
 if TYPE_CHECKING:
     from breakaway import design
-    from breakaway.imposed import ImposedMotion, impose_motion
     from breakaway.identify import JointFile, identify_inertia_friction
+    from breakaway.imposed import ImposedMotion, impose_motion
     from breakaway.logs import Log, read_log
     from breakaway.resolve import resolve
     from breakaway.run import Outcome, Run, RunMetrics

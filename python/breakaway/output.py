@@ -15,6 +15,8 @@ from breakaway.errors import OutputError
 def write_atomically(path: Path, content: bytes) -> None:
     """Write a file under a temporary name in its folder, then rename it.
 
+    Devices and pipes, such as ``/dev/stdout``, are written to and stay what they are.
+
     Raises
     ------
     OutputError
@@ -22,6 +24,9 @@ def write_atomically(path: Path, content: bytes) -> None:
 
     """
     try:
+        if path.is_char_device() or path.is_fifo():
+            path.write_bytes(content)
+            return
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as error:
         raise _not_written(path, error) from None

@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from breakaway.design.pole_placement import pole_placement, residual_n
-from breakaway.scenario.controller import FmVibration, Gains, Pid, PidSettings, PolePlacement, TwoStep
+from breakaway.scenario.controller import (
+    FmVibration,
+    Gains,
+    Pid,
+    PidSettings,
+    PolePlacement,
+    TwoStep,
+)
 from breakaway.scenario.scenario import Scenario
 
 

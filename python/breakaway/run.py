@@ -120,7 +120,7 @@ class Run:
         import xarray
 
         data = {
-            name: ("t_s", values, {"units": _UNITS[name]})
+            name: ("t_s", values, {"units": TRACE_UNITS[name]})
             for name, values in self.trace.items()
             if name != "t_s"
         }
@@ -140,7 +140,8 @@ class Run:
         return plot_run(self)
 
 
-_UNITS = {
+TRACE_UNITS = {
+    "t_s": "s",
     "reference_m": "m",
     "position_m": "m",
     "velocity_m_per_s": "m/s",
@@ -148,3 +149,4 @@ _UNITS = {
     "applied_force_n": "N",
     "joint_force_n": "N",
 }
+"""Column of a trace -> its unit."""

@@ -1,5 +1,6 @@
 """The joint file keeps what was identified, whole or not at all, and refuses damage by name."""
 
+import os
 import tomllib
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError
@@ -117,7 +118,7 @@ def test_a_failed_save_leaves_the_old_file(
 
     path = tmp_path / "joint.toml"
     path.write_text("old")
-    monkeypatch.setattr(Path, "replace", full)
+    monkeypatch.setattr(os, "replace", full)
     with pytest.raises(OutputError, match="No space left on device"):
         joint.save(path)
     assert path.read_text() == "old"

@@ -31,6 +31,22 @@ fn single_run() -> f64 {
 
 #[divan::bench]
 fn lanes_of_32_runs() -> f64 {
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+        // SAFETY: the processor was just asked for both features.
+        return unsafe { lanes_with_fma() };
+    }
+    lanes_loop()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn lanes_with_fma() -> f64 {
+    lanes_loop()
+}
+
+#[inline(always)]
+fn lanes_loop() -> f64 {
     let extraction = black_box(paper_as_computed()).map(&mut |_, x| Lanes([x; 32]));
     let limits: Limits<Lanes<32>> = paper_limits().map(&mut |_, x| Lanes([x; 32]));
     let mut state = ExtractionState::at_rest();

@@ -1,6 +1,5 @@
 //! Many runs at once: a plain array that compilers turn into vector instructions.
 
-use std::array;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use breakaway_core::Real;
@@ -18,8 +17,12 @@ pub struct LaneMask<const N: usize>([u64; N]);
 
 impl<const N: usize> LaneMask<N> {
     #[inline(always)]
-    fn of(a: Lanes<N>, b: Lanes<N>, holds: impl Fn(&f64, &f64) -> bool) -> Self {
-        Self(array::from_fn(|i| if holds(&a.0[i], &b.0[i]) { u64::MAX } else { 0 }))
+    fn of(a: Lanes<N>, b: Lanes<N>, holds: impl Fn(f64, f64) -> bool) -> Self {
+        let mut mask = [0; N];
+        for i in 0..N {
+            mask[i] = if holds(a.0[i], b.0[i]) { u64::MAX } else { 0 };
+        }
+        Self(mask)
     }
 }
 
@@ -29,7 +32,11 @@ macro_rules! lanewise {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(array::from_fn(|i| self.0[i] $op other.0[i]))
+                let mut out = self;
+                for i in 0..N {
+                    out.0[i] = self.0[i] $op other.0[i];
+                }
+                out
             }
         }
     };
@@ -41,7 +48,11 @@ macro_rules! maskwise {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(array::from_fn(|i| self.0[i] $op other.0[i]))
+                let mut out = self;
+                for i in 0..N {
+                    out.0[i] = self.0[i] $op other.0[i];
+                }
+                out
             }
         }
     };
@@ -58,7 +69,11 @@ impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|a| -a))
+        let mut out = self;
+        for lane in &mut out.0 {
+            *lane = -*lane;
+        }
+        out
     }
 }
 
@@ -66,7 +81,11 @@ impl<const N: usize> Not for LaneMask<N> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self(self.0.map(|m| !m))
+        let mut out = self;
+        for lane in &mut out.0 {
+            *lane = !*lane;
+        }
+        out
     }
 }
 
@@ -87,21 +106,35 @@ impl<const N: usize> Real for Lanes<N> {
     }
     #[inline(always)]
     fn select(mask: LaneMask<N>, yes: Self, no: Self) -> Self {
-        Self(array::from_fn(|i| {
-            f64::from_bits((mask.0[i] & yes.0[i].to_bits()) | (!mask.0[i] & no.0[i].to_bits()))
-        }))
+        let mut out = no;
+        for i in 0..N {
+            let bits = (mask.0[i] & yes.0[i].to_bits()) | (!mask.0[i] & no.0[i].to_bits());
+            out.0[i] = f64::from_bits(bits);
+        }
+        out
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
+        let mut out = self;
+        for lane in &mut out.0 {
+            *lane = lane.abs();
+        }
+        out
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self(array::from_fn(|i| self.0[i].mul_add(factor.0[i], addend.0[i])))
+        let mut out = self;
+        for i in 0..N {
+            out.0[i] = self.0[i].mul_add(factor.0[i], addend.0[i]);
+        }
+        out
     }
     #[inline(always)]
     fn exp2_parts(self) -> (Self, Self) {
-        let parts = self.0.map(Real::exp2_parts);
-        (Self(parts.map(|(fraction, _)| fraction)), Self(parts.map(|(_, power)| power)))
+        let (mut fraction, mut power) = (self, self);
+        for i in 0..N {
+            (fraction.0[i], power.0[i]) = self.0[i].exp2_parts();
+        }
+        (fraction, power)
     }
 }

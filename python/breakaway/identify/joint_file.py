@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tomllib
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -11,9 +10,10 @@ from typing import Annotated
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from breakaway.errors import LogError, OutputError, ScenarioError
+from breakaway.errors import LogError, ScenarioError
 from breakaway.identify.inertia_friction import InertiaFrictionFit
 from breakaway.logs.log import Log
+from breakaway.output import write_atomically
 
 METHOD = "IDIM least squares (Janot, Gautier, Brunot 2019)"
 
@@ -190,7 +190,7 @@ class JointFile(Table):
         }
 
     def save(self, path: str | Path) -> None:
-        """Write the file whole or not at all: to a neighbor first, which then takes its place.
+        """Write the file whole or not at all.
 
         Raises
         ------
@@ -198,20 +198,8 @@ class JointFile(Table):
             The folder is missing or can not be written, or ``path`` is a folder.
 
         """
-        target = Path(path)
         text = tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
-        temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-        try:
-            try:
-                temporary.write_text(text, encoding="utf-8", newline="\n")
-                temporary.replace(target)
-            finally:
-                temporary.unlink(missing_ok=True)
-        except OSError as error:
-            raise OutputError(
-                f"{target}: can not be written ({error.strerror or error}); give a file in a "
-                "folder that exists and that you may write to"
-            ) from None
+        write_atomically(Path(path), text.encode())
 
     @classmethod
     def load(cls, path: str | Path) -> JointFile:

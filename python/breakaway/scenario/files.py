@@ -19,7 +19,9 @@ PRESETS = files("breakaway.presets")
 
 def preset_names() -> list[str]:
     """Names of the presets that come with breakaway."""
-    return sorted(p.name.removesuffix(".toml") for p in PRESETS.iterdir() if p.name.endswith(".toml"))
+    return sorted(
+        p.name.removesuffix(".toml") for p in PRESETS.iterdir() if p.name.endswith(".toml")
+    )
 
 
 def load_scenario(source: str | Path) -> Scenario:
@@ -54,7 +56,9 @@ def parse_scenario(text: str, source: str) -> Scenario:
     except tomllib.TOMLDecodeError as error:
         raise ScenarioError(f"{source}: is not TOML: {error}") from None
     except ScenarioError as error:
-        raise ScenarioError(f"{source}:\n{error}" if "\n" in str(error) else f"{source}: {error}") from None
+        raise ScenarioError(
+            f"{source}:\n{error}" if "\n" in str(error) else f"{source}: {error}"
+        ) from None
 
 
 def _read(path: Path) -> str:

@@ -30,7 +30,7 @@ class Model(BaseModel):
 
     if not TYPE_CHECKING:  # type checkers see the signature that pydantic makes
 
-        def __init__(self, **values):
+        def __init__(self, **values: Any) -> None:  # noqa: ANN401 - pydantic checks them
             """Check the values; a `ScenarioError` names every field that is not valid."""
             try:
                 super().__init__(**values)
@@ -77,7 +77,9 @@ def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
     if kind == "finite_number":
         return f"{field}: {value!r} is not finite; give {_wanted(owner, names[-1])}"
     expected = _TYPE_NAMES.get(kind, detail["msg"][:1].lower() + detail["msg"][1:])
-    return f"{field}: {value!r} is not {expected}; give {_wanted(owner, names[-1] if names else '')}"
+    return (
+        f"{field}: {value!r} is not {expected}; give {_wanted(owner, names[-1] if names else '')}"
+    )
 
 
 _SIGNS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
@@ -104,9 +106,13 @@ def _descend(
         if tagged is not None and len(candidates) > 1:  # a union's tag comes right after its field
             candidates = [tagged]
             continue
-        owner = next((c for c in candidates if key in c.model_fields), candidates[0] if candidates else None)
+        owner = next(
+            (c for c in candidates if key in c.model_fields), candidates[0] if candidates else None
+        )
         names.append(key)
-        annotation = owner.model_fields[key].annotation if owner and key in owner.model_fields else None
+        annotation = (
+            owner.model_fields[key].annotation if owner and key in owner.model_fields else None
+        )
         candidates = _models_in(annotation)
     return names, owner
 

@@ -164,7 +164,10 @@ def _merged(old: object, new: object, *, replace: bool) -> object:
         return new
     if any(tag in new and new[tag] != old.get(tag) for tag in ("law", "kind")):
         return dict(new)
-    return {**old, **{k: _merged(old.get(k), _plain(v), replace=_is_model(v)) for k, v in new.items()}}
+    return {
+        **old,
+        **{k: _merged(old.get(k), _plain(v), replace=_is_model(v)) for k, v in new.items()},
+    }
 
 
 def _set_path(values: dict[str, Any], path: str, value: object) -> None:

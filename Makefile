@@ -1,0 +1,69 @@
+# The commands that the README and CI use. `make help` lists them.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+UV := $(BIN)/uv --quiet
+RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
+CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
+
+.PHONY: help demo test lint bench docs lock clean
+
+help:
+	@echo "make demo    set up, then reproduce the paper into out/reproduction"
+	@echo "make test    set up, then run every test"
+	@echo "make lint    formatting, static checks, layer rules"
+	@echo "make bench   measure speed and memory, into bench/results.json"
+	@echo "make docs    Rust API pages, and the pictures of the README"
+	@echo "make lock    resolve the Python lock files anew"
+
+demo: $(VENV)/.built
+	$(BIN)/breakaway reproduce --out out/reproduction
+
+test: $(VENV)/.built $(VENV)/.development
+	$(CARGO_TEST) --features breakaway-core/serde
+	cargo check --quiet --locked -p breakaway-core --no-default-features
+	$(BIN)/python -m pytest -n 2
+
+lint: $(VENV)/.built $(VENV)/.development
+	cargo fmt --all --check
+	cargo clippy --quiet --locked --workspace --all-targets --features breakaway-core/serde -- -D warnings
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/python tools/check_locks.py
+
+bench: $(VENV)/.built
+	$(BIN)/python bench/measure.py
+
+docs: $(VENV)/.built
+	cargo doc --quiet --locked --workspace --exclude breakaway-python --no-deps
+	$(BIN)/python tools/draw_readme.py
+
+# Setup, in steps that are redone only when what they read has changed.
+$(VENV)/.installer: tools/check_toolchain.sh requirements/installer.lock
+	@sh tools/check_toolchain.sh $(PYTHON)
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements/installer.lock
+	@touch $@
+
+$(VENV)/.runtime: $(VENV)/.installer requirements/runtime.lock
+	$(UV) pip install --python $(BIN)/python --require-hashes -r requirements/runtime.lock
+	@touch $@
+
+$(VENV)/.development: $(VENV)/.runtime requirements/dev.lock
+	$(UV) pip install --python $(BIN)/python --require-hashes -r requirements/dev.lock
+	@touch $@
+
+$(VENV)/.built: $(VENV)/.runtime $(RUST_SOURCES)
+	@sh tools/check_toolchain.sh $(PYTHON)
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(UV) pip install --python $(BIN)/python --no-deps --no-build-isolation --reinstall-package breakaway --editable .
+	@touch $@
+
+lock: $(VENV)/.installer
+	$(UV) pip compile pyproject.toml --group build --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/runtime.lock
+	$(UV) pip compile pyproject.toml --group build --group dev --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/dev.lock
+
+clean:
+	rm -rf $(VENV) target out

@@ -1,0 +1,1 @@
+"""The ``breakaway`` command: it asks the API and shows the answer; it computes nothing itself."""

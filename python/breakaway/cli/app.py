@@ -1,0 +1,123 @@
+"""The commands, and what becomes of their errors."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from breakaway.cli.design import design
+from breakaway.cli.identify import identify
+from breakaway.cli.reproduce import reproduce
+from breakaway.cli.run import run
+from breakaway.cli.scenarios import init, presets, schema
+from breakaway.cli.show import ClosedOutput, say
+from breakaway.errors import BreakawayError
+
+INTERRUPTED = 130
+
+HELP = "Free seized parts: identify a joint, design a controller, simulate the extraction."
+
+EPILOG = """
+[bold]Start here[/bold]
+  breakaway presets
+  breakaway run paper_as_computed --out result
+  breakaway init my_joint.toml
+
+[bold]Exit codes[/bold]
+  0    done; a run that diverges is a finding, not an error
+  1    unexpected: a fault of breakaway
+  2    invalid input: command line, scenario, joint file or log
+  3    output can not be written
+  4    not stable, where --require-stable asks for it
+  130  interrupted
+"""
+
+
+class Commands(TyperGroup):
+    """Commands whose errors end in a message and an exit code."""
+
+    def invoke(self, ctx: Any) -> Any:  # noqa: ANN401 - typer keeps the types of its click private
+        """Run the command that was asked for."""
+        try:
+            return super().invoke(ctx)
+        except BreakawayError as error:
+            print(f"error: {error}", file=sys.stderr)
+            raise typer.Exit(error.exit_code) from None
+        except ClosedOutput as error:
+            raise typer.Exit(error.exit_code) from None
+        except KeyboardInterrupt:
+            print("interrupted", file=sys.stderr)
+            raise typer.Exit(INTERRUPTED) from None
+
+
+app = typer.Typer(
+    name="breakaway",
+    cls=Commands,
+    help=HELP,
+    epilog=EPILOG,
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from breakaway import __version__
+
+        say(f"breakaway {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    pass
+
+
+def _examples(*lines: str) -> str:
+    return "\n  ".join(("[bold]Examples[/bold]", *lines))
+
+
+app.command(
+    epilog=_examples(
+        "breakaway run paper_as_computed",
+        "breakaway run my_joint.toml --out result --seed 7",
+        "breakaway run result/scenario.toml  # again, bit for bit",
+        "breakaway run paper_as_computed --joint joint.toml",
+        "breakaway run paper_as_computed --json | jq .metrics.peak_force_n",
+    )
+)(run)
+app.command(
+    epilog=_examples(
+        "breakaway design paper_as_computed",
+        "breakaway design my_joint.toml --require-stable && echo safe to try",
+    )
+)(design)
+app.command(
+    epilog=_examples(
+        "breakaway identify motor.csv --out joint.toml",
+        "breakaway identify DATA_EMPS.mat --format emps --out joint.toml",
+        "breakaway identify fast.csv --lowpass-hz 400 --decimation 5 --json",
+    )
+)(identify)
+app.command(epilog=_examples("breakaway presets", "breakaway presets --json"))(presets)
+app.command(
+    epilog=_examples(
+        "breakaway init my_joint.toml",
+        "breakaway init my_joint.toml --preset paper_as_printed --force",
+    )
+)(init)
+app.command(epilog=_examples("breakaway schema", "breakaway schema --out scenario.schema.json"))(
+    schema
+)
+app.command(epilog=_examples("breakaway reproduce", "breakaway reproduce --out paper"))(reproduce)

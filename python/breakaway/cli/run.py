@@ -1,0 +1,126 @@
+"""``breakaway run``: simulate one extraction."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from breakaway.cli.quantity import show, show_value, split_unit
+from breakaway.cli.show import Sheet, busy, say, say_json
+
+if TYPE_CHECKING:
+    from breakaway.cli.overlay import Overlay
+    from breakaway.run import Run
+    from breakaway.scenario import Scenario
+
+LIMIT_OF = {
+    "peak_force_n": "peak_force_max_n",
+    "largest_jump_m": "jump_max_m",
+    "release_velocity_m_per_s": "release_velocity_max_m_per_s",
+}
+"""Figure -> the limit of a scenario that judges it."""
+
+MEANING = {
+    "released": "the part is free, and no limit was exceeded",
+    "not_released": "time ran out before the part was free",
+    "diverged": "error or force passed its bound, after the time simulated below",
+    "limit_exceeded": "the part saw more than its limits allow",
+}
+"""Outcome -> what it says."""
+
+
+def run(
+    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for scenario, metrics, trace and figure.", metavar="DIR"),
+    ] = None,
+    joint: Annotated[
+        Path | None,
+        typer.Option(
+            help="Joint file of `breakaway identify`, laid over the scenario.", metavar="FILE"
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="Seed of all random draws, in place of the scenario's.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+) -> None:
+    """Simulate one extraction and show its figures.
+
+    With --out, the folder receives scenario.toml (every number explicit:
+    running it gives the same bits), metrics.json, trace.parquet, trace.csv,
+    figure.png and figure.svg; none of them where the run is interrupted.
+    """
+    from breakaway.cli.overlay import lay_over
+    from breakaway.scenario import load_scenario
+
+    asked = load_scenario(scenario)
+    if seed is not None:
+        asked = asked.with_(seed=seed)
+    overlay = lay_over(joint, asked) if joint else None
+    asked = overlay.scenario if overlay else asked
+    finished, files = _simulate(asked, out)
+    if json:
+        _show_json(finished, files, overlay)
+        return
+    if overlay:
+        say(*overlay.tables())
+    _show(finished)
+    for note in _notes(finished, out):
+        say(note)
+    for path in files:
+        say(f"wrote {path}")
+
+
+def _simulate(scenario: Scenario, out: Path | None) -> tuple[Run, list[Path]]:
+    from breakaway.simulate import simulate
+
+    what = f"simulating {show('duration_s', scenario.timing.duration_s)} ..."
+    if out is None:
+        with busy(what):
+            return simulate(scenario), []
+    from breakaway.run_output import written_run
+
+    with busy(what), written_run(out) as write:  # a folder that can not be written fails now
+        finished = simulate(scenario)
+        return finished, write(finished)
+
+
+def _show(finished: Run) -> None:
+    limits = finished.scenario.limits
+    judged = {
+        name: limit
+        for name, field in LIMIT_OF.items()
+        if (limit := getattr(limits, field)) is not None
+    }
+    columns = ["metric", "value", "unit", *(["limit"] if judged else [])]
+    shown = Sheet("", columns, numbers=["value"])
+    for name, value in finished.metrics.to_dict().items():
+        row = [split_unit(name)[0], *show_value(name, value)]
+        if name in judged:
+            exceeded = " exceeded" if value is not None and value > judged[name] else ""
+            row.append(f"{show(name, judged[name])}{exceeded}")
+        shown.add(*row)
+    outcome = str(finished.outcome)
+    say(f"{finished.scenario.name}: {outcome} ({MEANING[outcome]}), seed {finished.seed}", shown)
+
+
+def _notes(finished: Run, out: Path | None) -> list[str]:
+    notes = []
+    if out is not None and not finished.trace:
+        notes.append("no trace and no figure: trace.every_samples is 0")
+    if out is None:
+        notes.append("--out DIR keeps trace, figure and the scenario that reruns this")
+    return notes
+
+
+def _show_json(finished: Run, files: list[Path], overlay: Overlay | None) -> None:
+    from breakaway.run_output import run_summary
+
+    content = run_summary(finished) | {"files": [str(path) for path in files]}
+    if overlay:
+        content["joint"] = overlay.to_dict()
+    say_json(content)

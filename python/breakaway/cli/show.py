@@ -1,0 +1,155 @@
+"""Showing results: tables for people, JSON for programs, on any terminal and in any pipe."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.cells import cell_len
+from rich.console import Console, RenderableType
+from rich.measure import Measurement
+from rich.table import Table
+from rich.text import Text
+
+from breakaway.errors import OutputError
+
+PIPED_WIDTH = 10_000
+"""Width, in characters, for output that no terminal shows: lines are never broken there."""
+
+PROSE_WIDTH = 24
+"""Narrowest column of prose, in characters."""
+
+
+class ClosedOutput(Exception):  # noqa: N818 - an end, not an error
+    """Whoever read the standard output has stopped reading, as ``head`` does."""
+
+    exit_code = OutputError.exit_code
+
+
+def say(*parts: RenderableType) -> None:
+    """Print text or tables: whole values always, colors and line breaks only on a terminal.
+
+    Strings are plain text, without markup.
+
+    Raises
+    ------
+    OutputError
+        The standard output can not be written to, such as on a full disk.
+
+    Examples
+    --------
+    >>> say("peak force [N]")
+    peak force [N]
+
+    """
+    console = Console(file=sys.stdout, highlight=False)
+    if not sys.stdout.isatty():
+        console.width = PIPED_WIDTH
+    for part in parts:
+        shown = Text(part) if isinstance(part, str) else part
+        needed = Measurement.get(console, console.options, shown).minimum
+        with console.capture() as capture:
+            # A terminal that is too narrow for the numbers breaks the lines by itself.
+            console.print(shown, width=max(console.width, needed), crop=False)
+        _write("\n".join(line.rstrip() for line in capture.get().split("\n")))
+
+
+def say_json(content: object) -> None:
+    """Print one JSON document; what is not finite becomes null.
+
+    Examples
+    --------
+    >>> say_json({"time_to_release_s": float("nan")})
+    {
+      "time_to_release_s": null
+    }
+
+    """
+    _write(json.dumps(plain(content), indent=2, allow_nan=False) + "\n")
+
+
+def plain(content: object) -> Any:  # noqa: ANN401 - any JSON
+    """Give what JSON can hold: None for what is not finite, [real, imaginary] for complex.
+
+    Examples
+    --------
+    >>> plain({"poles_per_s": (complex(-1, 2),), "ki": float("inf")})
+    {'poles_per_s': [[-1.0, 2.0]], 'ki': None}
+
+    """
+    if isinstance(content, complex):
+        return [plain(content.real), plain(content.imag)]
+    if isinstance(content, float):
+        return content if math.isfinite(content) else None
+    if isinstance(content, Mapping):
+        return {str(key): plain(value) for key, value in content.items()}
+    if isinstance(content, Sequence) and not isinstance(content, str):
+        return [plain(value) for value in content]
+    return content
+
+
+class Sheet(Table):
+    """A table that breaks only its columns of prose, never a number or a name."""
+
+    def __init__(
+        self,
+        title: str,
+        columns: Sequence[str],
+        *,
+        numbers: Sequence[str] = (),
+        prose: Sequence[str] = (),
+    ) -> None:
+        super().__init__(
+            title=title or None, box=SIMPLE_HEAD, title_justify="left", title_style="bold"
+        )
+        for name in columns:
+            self.add_column(
+                name,
+                justify="right" if name in numbers else "left",
+                no_wrap=name not in prose,
+                overflow="fold",
+                min_width=PROSE_WIDTH if name in prose else cell_len(name),
+            )
+
+    def add(self, *cells: str) -> None:
+        """Add a row of plain text."""
+        for column, cell in zip(self.columns, cells, strict=True):
+            if column.no_wrap:
+                widest = max(cell_len(line) for line in cell.split("\n"))
+                column.min_width = max(column.min_width or 0, widest)
+        self.add_row(*(Text(cell) for cell in cells))
+
+
+@contextmanager
+def busy(what: str) -> Iterator[None]:
+    """Show on a terminal that something is computed; on the error stream, not in pipes."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    with Console(stderr=True).status(Text(what)):
+        yield
+
+
+def _write(text: str) -> None:
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    try:
+        sys.stdout.write(text.encode(encoding, "replace").decode(encoding))
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _discard_output()
+        raise ClosedOutput from None
+    except OSError as error:
+        _discard_output()
+        reason = error.strerror or str(error)
+        raise OutputError(f"standard output: can not be written: {reason}") from None
+
+
+def _discard_output() -> None:
+    """Let the interpreter flush what is left into nothing when it exits."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,1 @@
+"""The paper reproduced: its tables and figures from our equations, and where they disagree."""
