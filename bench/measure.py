@@ -26,8 +26,8 @@ def kernel() -> dict[str, float]:
     median_s = {}
     for name in ("single_run", "bare_equations_by_hand", "lanes_of_32_runs"):
         row = next(line for line in done.stdout.splitlines() if name in line)
-        _, _, median = re.findall(r"([\d.]+) (ns|µs|ms|s)\b", row)[:3]
-        median_s[name] = float(median[0]) * {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}[median[1]]
+        _, _, (median, unit) = re.findall(r"([\d.]+) (ns|µs|ms|s)\b", row)[:3]
+        median_s[name] = float(median) * {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}[unit]
     single, bare = median_s["single_run"], median_s["bare_equations_by_hand"]
     return {
         "single_run_wall_s_per_simulated_s": single / SIMULATED_S,

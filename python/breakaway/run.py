@@ -70,7 +70,8 @@ class RunMetrics:
     largest_impact_work_j: float
     """Largest work done by one impact, J."""
     largest_jump_m: float
-    """Largest travel above the reference's speed in one slip, m: what harms the part."""
+    """Largest travel above the reference's speed in one slip within the guide, m: what harms the
+    part."""
     time_to_breakaway_s: float
     """When the joint broke loose, s."""
     time_to_release_s: float

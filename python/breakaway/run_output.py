@@ -40,6 +40,19 @@ def run_summary(run: Run) -> dict[str, Any]:
     }
 
 
+def has_trace(run: Run) -> bool:
+    """Tell whether a run recorded anything.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> has_trace(bk.simulate(bk.load_scenario("paper_as_computed")))
+    True
+
+    """
+    return any(len(column) for column in run.trace.values())
+
+
 def write_run(run: Run, folder: str | Path) -> list[Path]:
     """Write ``scenario.toml``, ``metrics.json``, the trace and its figure to a folder.
 
@@ -99,14 +112,14 @@ def written_run(folder: Path) -> Iterator[Callable[[Run], list[Path]]]:
 
 
 def _names(run: Run) -> list[str]:
-    return ["scenario.toml", "metrics.json", *(TRACE_FILES if run.trace else ())]
+    return ["scenario.toml", "metrics.json", *(TRACE_FILES if has_trace(run) else ())]
 
 
 def _write_files(run: Run, folder: Path) -> None:
     summary = json.dumps(run_summary(run), indent=2, allow_nan=False) + "\n"
     (folder / "metrics.json").write_text(summary, encoding="utf-8", newline="\n")
     (folder / "scenario.toml").write_text(_rerun_toml(run), encoding="utf-8", newline="\n")
-    if not run.trace:
+    if not has_trace(run):
         return
     _write_trace(run, folder)
     from breakaway.plots.run import plot_run
@@ -140,7 +153,9 @@ def _write_trace(run: Run, folder: Path) -> None:
     )
     import_module("pyarrow.parquet").write_table(trace, folder / "trace.parquet")
     csv: Any = import_module("pyarrow.csv")
-    csv.write_csv(trace, folder / "trace.csv", csv.WriteOptions(quoting_style="none"))
+    with (folder / "trace.csv").open("wb") as file:
+        file.write((",".join(run.trace) + "\n").encode())  # which pyarrow would quote
+        csv.write_csv(trace, file, csv.WriteOptions(include_header=False))
 
 
 def _remove(path: Path) -> None:

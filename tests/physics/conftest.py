@@ -94,7 +94,13 @@ class ScipyLugre:
             return [v, self.bristle_rate(y[0], v, y[1])]
 
         solution = solve_ivp(
-            rates, (0.0, times[-1]), [0.0, 0.0], t_eval=times, method="LSODA", rtol=1e-10, atol=1e-16
+            rates,
+            (0.0, times[-1]),
+            [0.0, 0.0],
+            t_eval=times,
+            method="LSODA",
+            rtol=1e-10,
+            atol=1e-16,
         )
         assert solution.success, solution.message
         pairs = zip(times, *solution.y, strict=True)

@@ -1,6 +1,7 @@
 """Every field of every scenario model, found by walking the models themselves."""
 
 import copy
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
@@ -20,8 +21,8 @@ TYPICAL = {
     "damping_n_s_per_m": 9000.0,
     "engagement_length_m": 0.1,
     "stribeck_velocity_m_per_s": 0.09,
-    "distance_m": 0.1,
-    "velocity_m_per_s": 0.2,
+    "distance_m": 1e-4,  # near enough for a step not to diverge
+    "velocity_m_per_s": 5e-3,
     "duration_s": 0.01,
     "force_max_n": 1000.0,
     "settling_time_s": 5e-4,
@@ -49,10 +50,15 @@ def tag_of(model):
     }
 
 
+@functools.cache
+def properties_of(model):
+    return model.model_json_schema()["properties"]
+
+
 def example(model):
     """Plain values of a model: its tag and whatever is required."""
     values: dict[str, Any] = tag_of(model)
-    schema = model.model_json_schema()["properties"]
+    schema = properties_of(model)
     for name, field in model.model_fields.items():
         if field.default is not PydanticUndefined or field.default_factory is not None:
             continue
@@ -97,7 +103,7 @@ class Site:
     @property
     def schema(self):
         """What the JSON schema says of the field, but for the option of leaving it out."""
-        schema = self.model.model_json_schema()["properties"][self.name]
+        schema = properties_of(self.model)[self.name]
         options = [o for o in schema.get("anyOf", [schema]) if o.get("type") != "null"]
         return options[0]
 

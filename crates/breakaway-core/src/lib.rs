@@ -8,8 +8,8 @@
 //! clock, no random draw, no input or output. Random draws arrive as numbers in [`Draws`].
 //!
 //! Configurations are immutable and separate from the states they move. They are not checked
-//! here: the scenario models of the Python package hold every valid range, and an invalid number
-//! gives a run that ends as [`Outcome::Diverged`], never a panic.
+//! here: the scenario models of the Python package hold every valid range. A number outside them
+//! gives a meaningless run, and never a panic.
 //!
 //! # Example
 //! ```

@@ -82,7 +82,7 @@ parameters! {
         pub largest_step_m,
         /// Largest work done by one impact, J.
         pub largest_impact_work_j,
-        /// Travel in the current slip event above the reference's speed, m.
+        /// Travel in the current slip event above the reference's speed, in the guide, m.
         pub jump_m,
         /// Largest jump, m.
         pub largest_jump_m,
@@ -149,7 +149,9 @@ impl<R: Real> Metrics<R> {
         let missed = R::zero().lt((sample.command_n - sample.applied_force_n).abs());
         self.saturated_s = self.saturated_s + R::select(missed, period_s, R::zero());
         self.count_impacts(period_s, force, travel);
-        self.count_jump(period_s, travel, sample.reference_rate_m_per_s);
+        let in_guide = sample.position_m.lt(limits.release_position_m);
+        let slipped = R::select(in_guide, travel, R::zero());
+        self.count_jump(period_s, slipped, sample.reference_rate_m_per_s);
         self.note_times(limits, sample, bounded);
     }
 
@@ -187,8 +189,8 @@ impl<R: Real> Metrics<R> {
         self.largest_impact_work_j = self.largest_impact_work_j.max(self.impact_work_j);
     }
 
-    /// A jump is travel faster than the reference, which is what harms a part: it ends when the
-    /// part is no faster than the reference.
+    /// A jump is travel faster than the reference while still in the guide, which is what harms a
+    /// part: it ends when the part is no faster than the reference, or free.
     #[inline(always)]
     fn count_jump(&mut self, period_s: R, travel: R, reference_rate: R) {
         let commanded = reference_rate.max(R::zero());

@@ -218,7 +218,8 @@ fn a_diverging_lane_disturbs_no_other_and_keeps_its_metrics() {
         (31, "mass_kg", f64::NAN),
     ];
     let (mut diverged, mut not_a_number) = ([0; 32], [0; 32]);
-    for case in cases::all() {
+    // Every fifth case: five shares no factor with the numbers of kinds, so every kind is met.
+    for case in cases::all().into_iter().step_by(5) {
         let bad = |lane: u64| {
             varied(&case.extraction, lane).map(&mut |name, value| {
                 let hit = BAD.iter().find(|bad| bad.0 == lane as usize && bad.1 == name);

@@ -23,7 +23,7 @@ def reproduce(
 
     done = reproduce_paper(out, _progress)
     header = [str(name) for name in done.header]
-    shown = Sheet("", header, numbers=header[1:])
+    shown = Sheet("", header, prose=header[:-1])
     for row in done.table:
         shown.add(*row)
     say(shown, str(done.report_path))

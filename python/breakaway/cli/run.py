@@ -54,14 +54,17 @@ def run(
     running it gives the same bits), metrics.json, trace.parquet, trace.csv,
     figure.png and figure.svg; none of them where the run is interrupted.
     """
-    from breakaway.cli.overlay import lay_over
     from breakaway.scenario import load_scenario
 
     asked = load_scenario(scenario)
     if seed is not None:
         asked = asked.with_(seed=seed)
-    overlay = lay_over(joint, asked) if joint else None
-    asked = overlay.scenario if overlay else asked
+    overlay = None
+    if joint is not None:
+        from breakaway.cli.overlay import lay_over
+
+        overlay = lay_over(joint, asked)
+        asked = overlay.scenario
     finished, files = _simulate(asked, out)
     if json:
         _show_json(finished, files, overlay)
@@ -100,7 +103,9 @@ def _show(finished: Run) -> None:
     shown = Sheet("", columns, numbers=["value"])
     for name, value in finished.metrics.to_dict().items():
         row = [split_unit(name)[0], *show_value(name, value)]
-        if name in judged:
+        if judged and name not in judged:
+            row.append("")
+        elif judged:
             exceeded = " exceeded" if value is not None and value > judged[name] else ""
             row.append(f"{show(name, judged[name])}{exceeded}")
         shown.add(*row)
@@ -109,8 +114,10 @@ def _show(finished: Run) -> None:
 
 
 def _notes(finished: Run, out: Path | None) -> list[str]:
+    from breakaway.run_output import has_trace
+
     notes = []
-    if out is not None and not finished.trace:
+    if out is not None and not has_trace(finished):
         notes.append("no trace and no figure: trace.every_samples is 0")
     if out is None:
         notes.append("--out DIR keeps trace, figure and the scenario that reruns this")

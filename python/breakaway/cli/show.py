@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import os
@@ -22,7 +23,7 @@ from breakaway.errors import OutputError
 PIPED_WIDTH = 10_000
 """Width, in characters, for output that no terminal shows: lines are never broken there."""
 
-PROSE_WIDTH = 24
+PROSE_WIDTH = 18
 """Narrowest column of prose, in characters."""
 
 
@@ -48,16 +49,16 @@ def say(*parts: RenderableType) -> None:
     peak force [N]
 
     """
-    console = Console(file=sys.stdout, highlight=False)
+    collected = _Collected()
+    console = _Console(file=collected, highlight=False)
     if not sys.stdout.isatty():
         console.width = PIPED_WIDTH
     for part in parts:
         shown = Text(part) if isinstance(part, str) else part
         needed = Measurement.get(console, console.options, shown).minimum
-        with console.capture() as capture:
-            # A terminal that is too narrow for the numbers breaks the lines by itself.
-            console.print(shown, width=max(console.width, needed), crop=False)
-        _write("\n".join(line.rstrip() for line in capture.get().split("\n")))
+        # A terminal that is too narrow for the numbers breaks the lines by itself.
+        console.print(shown, width=max(console.width, needed), crop=False)
+    _write("\n".join(line.rstrip() for line in collected.getvalue().split("\n")))
 
 
 def say_json(content: object) -> None:
@@ -136,10 +137,29 @@ def busy(what: str) -> Iterator[None]:
         yield
 
 
+class _Collected(io.StringIO):
+    """What will be written to the standard output; a terminal if that is one."""
+
+    def isatty(self) -> bool:
+        return sys.stdout.isatty()
+
+
+class _Console(Console):
+    """A console that draws with what the standard output's encoding has."""
+
+    @property
+    def encoding(self) -> str:
+        return _encoding()
+
+
+def _encoding() -> str:
+    return (getattr(sys.stdout, "encoding", None) or "utf-8").lower()
+
+
 def _write(text: str) -> None:
-    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    encoding = _encoding()
     try:
-        sys.stdout.write(text.encode(encoding, "replace").decode(encoding))
+        sys.stdout.write(_encodable(text, encoding))
         sys.stdout.flush()
     except BrokenPipeError:
         _discard_output()
@@ -148,6 +168,18 @@ def _write(text: str) -> None:
         _discard_output()
         reason = error.strerror or str(error)
         raise OutputError(f"standard output: can not be written: {reason}") from None
+
+
+def _encodable(text: str, encoding: str) -> str:
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return text.translate(_ASCII).encode(encoding, "replace").decode(encoding)
+    return text
+
+
+_ASCII = str.maketrans({"µ": "u", "²": "^2", "±": "+/-", "–": "-", "‖": "|"})
+"""What stands for the signs of units where an old encoding lacks them."""
 
 
 def _discard_output() -> None:

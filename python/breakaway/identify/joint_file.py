@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
-import tomllib
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated
 
 import tomli_w
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
+from breakaway._core import __version__
 from breakaway.errors import LogError, ScenarioError
 from breakaway.identify.inertia_friction import InertiaFrictionFit
 from breakaway.logs.log import Log
 from breakaway.output import write_atomically
+from breakaway.scenario.files import parse_toml
+from breakaway.scenario.model import Model, NotNegative, Positive
 
 METHOD = "IDIM least squares (Janot, Gautier, Brunot 2019)"
 
-Positive = Annotated[float, Field(gt=0.0)]
-NotNegative = Annotated[float, Field(ge=0.0)]
 
-
-class Table(BaseModel):
-    """A table of the joint file: no unknown keys, no conversions, finite numbers."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-
-
-class Settings(Table):
+class Settings(Model):
     """Settings of the identification."""
 
     lowpass_hz: Positive
@@ -36,7 +28,7 @@ class Settings(Table):
     trimmed_samples: Annotated[int, Field(ge=0)]
 
 
-class Provenance(Table):
+class Provenance(Model):
     """Where the figures come from. ``log_sha256`` is absent for a log that was in no file."""
 
     log: str
@@ -45,29 +37,29 @@ class Provenance(Table):
     method: str
     settings: Settings
     samples: Annotated[int, Field(ge=1)]
-    notes: list[str] = []
+    notes: Annotated[list[str], Field(default_factory=list)]
 
 
-class Part(Table):
+class Part(Model):
     """The moving part."""
 
     mass_kg: Positive
 
 
-class Joint(Table):
+class Joint(Model):
     """Sliding friction of the joint, the same in both directions."""
 
     coulomb_n: NotNegative
     viscous_n_s_per_m: NotNegative
 
 
-class Rig(Table):
+class Rig(Model):
     """What belongs to the rig that measured, not to the joint."""
 
     offset_n: float
 
 
-class StandardError(Table):
+class StandardError(Model):
     """Standard errors of the symmetric parameters."""
 
     mass_kg: NotNegative
@@ -76,7 +68,7 @@ class StandardError(Table):
     offset_n: NotNegative
 
 
-class AsymmetricParameters(Table):
+class AsymmetricParameters(Model):
     """Parameters with friction of its own in each direction, positive where it resists."""
 
     mass_kg: float
@@ -92,14 +84,14 @@ class Asymmetric(AsymmetricParameters):
     standard_error: AsymmetricParameters
 
 
-class RelativeForceError(Table):
+class RelativeForceError(Model):
     """100 ‖F - W θ‖ / ‖F‖ of either fit, in percent."""
 
     symmetric: NotNegative
     asymmetric: NotNegative
 
 
-class JointFile(Table):
+class JointFile(Model):
     """An identified joint, as it is kept in ``joint.toml``.
 
     Units are in the keys. ``not_identified`` maps a field of a scenario to the reason why the
@@ -156,7 +148,7 @@ class JointFile(Table):
             provenance=Provenance(
                 log=log.name,
                 log_sha256=log.sha256,
-                breakaway_version=_version(),
+                breakaway_version=__version__,
                 method=METHOD,
                 settings=Settings(
                     lowpass_hz=fit.lowpass_hz,
@@ -214,31 +206,9 @@ class JointFile(Table):
         """
         source = Path(path)
         try:
-            content = tomllib.loads(source.read_bytes().decode("utf-8"))
+            text = source.read_text(encoding="utf-8")
         except FileNotFoundError:
             raise ScenarioError(f"{source}: there is no such file; check the path") from None
-        except OSError as error:
-            raise ScenarioError(f"{source}: can not be read ({error})") from None
-        except ValueError as error:
-            raise ScenarioError(
-                f"{source.name}: is not a TOML file ({error}); write it anew with JointFile.save"
-            ) from None
-        try:
-            return cls.model_validate(content)
-        except ValidationError as error:
-            faults = [
-                f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']} (it is "
-                f"{str(fault['input'])[:60]!r})"
-                for fault in error.errors()
-            ]
-            raise ScenarioError(
-                f"{source.name}: {'; '.join(faults)}; put these keys right, or identify anew"
-            ) from None
-
-
-def _version() -> str:
-    """Return the installed version, or say that there is none (a source tree on the path)."""
-    try:
-        return version("breakaway")
-    except PackageNotFoundError:
-        return "not installed"
+        except (OSError, UnicodeDecodeError) as error:
+            raise ScenarioError(f"{source}: can not be read as text: {error}") from None
+        return parse_toml(cls, text, source.name)

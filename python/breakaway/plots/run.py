@@ -49,7 +49,7 @@ def plot_run(run: Run) -> Figure:
     ['position (mm)', 'error (µm)', 'force (N)']
 
     """
-    if not run.trace:
+    if not any(len(column) for column in run.trace.values()):
         raise ScenarioError(
             "trace.every_samples: 0 keeps no trace to plot; give a whole number >= 1"
         )
@@ -64,7 +64,7 @@ def plot_run(run: Run) -> Figure:
         _draw_error(error, columns, per_s)
         _draw_forces(force, run, columns, per_s)
         end_s = max(run.metrics.simulated_s, float(run.trace["t_s"][-1]))
-        force.set_xlim(0.0, end_s * per_s)
+        force.set_xlim(0.0, 1.01 * end_s * per_s)
         force.set_xlabel(f"time ({time_unit})")
         _mark_events([position, error, force], run, per_s, end_s)
         figure.align_ylabels()
@@ -87,7 +87,7 @@ def _draw_position(axes: Axes, columns: Mapping[str, Array], per_s: float) -> No
     t, x = _thinned(columns["t_s"], columns["position_m"])
     axes.plot(t * per_s, x * factor, color=COLORS["ours"], label="position")
     axes.set_ylabel(f"position ({unit})")
-    axes.legend(loc="best")
+    _legend(axes, above=1.1)  # leaves a line for the names of the events
 
 
 def _draw_error(axes: Axes, columns: Mapping[str, Array], per_s: float) -> None:
@@ -99,23 +99,23 @@ def _draw_error(axes: Axes, columns: Mapping[str, Array], per_s: float) -> None:
 
 
 def _draw_forces(axes: Axes, run: Run, columns: Mapping[str, Array], per_s: float) -> None:
-    forces = (
-        ("applied", "applied_force_n", COLORS["alternative"]),
-        ("joint", "joint_force_n", COLORS["ours"]),
-    )
-    factor, unit = scaled([v for _, name, _ in forces for v in _range(columns[name])], "N")
-    for label, name, color in forces:
-        t, values = _thinned(columns["t_s"], columns[name])
-        axes.plot(t * per_s, values * factor, color=color, label=label)
+    applied, joint = columns["applied_force_n"], columns["joint_force_n"]
     t, x = _thinned(columns["t_s"], columns["position_m"])
-    joint = run.scenario.joint.model_dump()
-    breakaway = np.array([_core.breakaway_force(joint, float(at)) for at in x])  # equation (5)
-    axes.plot(
-        t * per_s, breakaway * factor, color=COLORS["text"], linestyle=(0, (4, 2)), linewidth=1.0,
-        label="breakaway force $F_s(x)$",
-    )  # fmt: skip
+    law = run.scenario.joint.model_dump()
+    loose = np.array([_core.breakaway_force(law, float(at)) for at in x])  # equation (5)
+    factor, unit = scaled([*_range(applied), *_range(joint), *_range(loose)], "N")
+    for label, values, color in (("applied", applied, "ours"), ("joint", joint, "alternative")):
+        at, shown = _thinned(columns["t_s"], values)
+        axes.plot(at * per_s, shown * factor, color=COLORS[color], label=label)
+    axes.plot(t * per_s, loose * factor, color=COLORS["text"], linestyle=(0, (4, 2)), linewidth=1.0)
+    axes.lines[-1].set_label("breakaway force $F_s(x)$")
     axes.set_ylabel(f"force ({unit})")
-    axes.legend(loc="best", ncols=3)
+    _legend(axes, above=1.0)
+
+
+def _legend(axes: Axes, *, above: float) -> None:
+    """Put the legend over the panel, where it can hide nothing."""
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, above), ncols=3, borderaxespad=0.1)
 
 
 def _mark_events(panels: list[Axes], run: Run, per_s: float, end_s: float) -> None:

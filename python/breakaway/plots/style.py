@@ -21,7 +21,7 @@ COLORS = {
     "fifth": "#E69F00",
     "event": "#00795A",
     "alarm": "#B5300F",
-    "reference": "#9A9A9A",
+    "reference": "#B0B0B0",
     "axis": "#6B6B6B",
     "text": "#1A1A1A",
 }

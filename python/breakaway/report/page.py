@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
-
-from breakaway.plots.style import save_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def render(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the template wants
@@ -26,7 +20,7 @@ def render(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["figure"] = inline_svg
+    environment.filters["inline_svg"] = inline_svg
     environment.filters["number"] = readable_number
     return environment.get_template(template).render(**context)
 
@@ -35,13 +29,14 @@ def _source(name: str) -> str:
     return (files("breakaway.report") / name).read_text(encoding="utf-8")
 
 
-def inline_svg(figure: Figure) -> Markup:
-    """A figure as SVG for the inside of a page: no XML header, as wide as the page."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "figure.svg"
-        save_figure(figure, path)
-        svg = path.read_text(encoding="utf-8")
-    opening, rest = svg[svg.index("<svg") :].split(">", 1)
+def inline_svg(path: Path) -> Markup:
+    """The SVG file of a drawing for the inside of a page: no XML header, as wide as the page.
+
+    Its names get the file's name as a prefix: those of two drawings on a page must not meet.
+    """
+    svg = path.read_text(encoding="utf-8")
+    svg = re.sub(r'( id="|url\(#|href="#)', rf"\1{path.stem}-", svg[svg.index("<svg") :])
+    opening, rest = svg.split(">", 1)
     opening = re.sub(r' (width|height)="[^"]*"', "", opening)
     return Markup(f"{opening}>{rest}")
 

@@ -19,7 +19,7 @@ from breakaway.reproduction.findings import (
     table_1_and_table_2,
 )
 from breakaway.reproduction.rows import Row
-from breakaway.reproduction.runs import SEEDS, VAR_LEVELS, Runs, simulate_all
+from breakaway.reproduction.runs import SEEDS, VAR_LEVELS, simulate_all
 from breakaway.reproduction.tables import table_1, table_2
 
 
@@ -63,7 +63,7 @@ def reproduce(out: Path, progress: Callable[[str], None] = lambda _: None) -> Re
         figures = draw_all(runs)
         _save_figures(figures, staging)
         glance = _at_a_glance(rows, from_table_1, findings)
-        page = _page(rows, from_table_1, findings, figures, glance, runs)
+        page = _page(rows, from_table_1, findings, figures, glance, runs.oracle.seed, staging)
         (staging / "report.html").write_text(page, encoding="utf-8")
         values = _json(rows + from_table_1, findings, figures)
         (staging / "reproduction.json").write_text(json.dumps(values, indent=1), encoding="utf-8")
@@ -113,7 +113,8 @@ def _page(
     findings: Sequence[Finding],
     figures: Sequence[ReproducedFigure],
     glance: Sequence[Row],
-    runs: Runs,
+    seed: int,
+    folder: Path,
 ) -> str:
     tables = [
         {
@@ -142,7 +143,8 @@ def _page(
         figures=figures,
         tables=tables,
         findings=findings,
-        seed=runs.oracle.seed,
+        seed=seed,
+        folder=folder,
         method=_method(),
     )
 

@@ -52,7 +52,10 @@ def table_1() -> list[Row]:
         ("v_s", "Stribeck velocity", "0.09", joint.stribeck_velocity_m_per_s, "m/s"),
         ("l_f", "disassembly distance l_f", "0.1", joint.engagement_length_m, "m"),
     )
-    return [printed_row(f"table1.{key}", *row, implied) for key, *row in rows]
+    return [
+        printed_row(f"table1.{key}", what, printed, ours, unit, implied)
+        for key, what, printed, ours, unit in rows
+    ]
 
 
 def table_2(preset: str = "paper_as_computed", key: str = "table2") -> list[Row]:

@@ -6,13 +6,16 @@ import difflib
 import tomllib
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import tomli_w
 
 from breakaway.errors import ScenarioError
 from breakaway.output import write_atomically
+from breakaway.scenario.model import Model
 from breakaway.scenario.scenario import Scenario
+
+AnyModel = TypeVar("AnyModel", bound=Model)
 
 PRESETS = files("breakaway.presets")
 
@@ -51,8 +54,20 @@ def load_scenario(source: str | Path) -> Scenario:
 
 def parse_scenario(text: str, source: str) -> Scenario:
     """Build a scenario from TOML; ``source`` names the text in errors."""
+    return parse_toml(Scenario, text, source)
+
+
+def parse_toml(model: type[AnyModel], text: str, source: str) -> AnyModel:
+    """Build a model from TOML; ``source`` names the text in errors.
+
+    Raises
+    ------
+    ScenarioError
+        It is not TOML, or a value is not valid; the message names every such field.
+
+    """
     try:
-        return Scenario.parse(tomllib.loads(text))
+        return model.parse(tomllib.loads(text))
     except tomllib.TOMLDecodeError as error:
         raise ScenarioError(f"{source}: is not TOML: {error}") from None
     except ScenarioError as error:

@@ -68,7 +68,7 @@ def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
         return f"{field}: {value!r} is not one of {context['expected']}"
     if kind == "value_error":
         reason = context["error"]
-        return str(reason) if not names else f"{field}: {reason}"
+        return str(reason) if not names else f"{field}.{reason}"
     bound = next((key for key in _SIGNS if key in context), None)
     if bound is not None:
         limit = context[bound]
@@ -155,9 +155,10 @@ def _wrong_kind(field: str, value: object, context: Mapping[str, Any]) -> str:
 def _wanted(owner: type[BaseModel] | None, name: str) -> str:
     """The description of a field, with its valid range."""
     field = owner.model_fields.get(name) if owner else None
-    if field is None or field.description is None:
+    if field is None:
         return "a valid value"
-    return f"{valid_range(owner, name)}: {' '.join(field.description.split()).rstrip('.')}"
+    described = " ".join((field.description or "").split()).rstrip(".")
+    return f"{valid_range(owner, name)}: {described}".rstrip(": ")
 
 
 def valid_range(owner: type[BaseModel] | None, name: str) -> str:

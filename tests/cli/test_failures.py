@@ -1,0 +1,156 @@
+"""Every failure is a message and an exit code, without a traceback or a half-written file."""
+
+import importlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import breakaway as bk
+
+Call = Callable[..., Any]
+COMMAND = [sys.executable, "-m", "breakaway.cli.main"]
+BASE = bk.resolve(bk.load_scenario("paper_as_computed"))
+
+
+def scenario_text(tmp_path: Path) -> str:
+    bk.save_scenario(BASE, tmp_path / "base.toml")
+    return (tmp_path / "base.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("stiction_n = ", "stictoin_n = ", "did you mean stiction_n?"),
+        ("mass_kg = 1.0", "mass_kg = nan", "part.mass_kg: nan is not"),
+        ("mass_kg = 1.0", "mass_kg = -1.0", "part.mass_kg: -1.0 is not > 0"),
+        ("mass_kg = 1.0", "mass_kg = inf", "part.mass_kg: inf is not finite"),
+        ("mass_kg = 1.0", 'mass_kg = "1 kg"', "part.mass_kg: '1 kg' is not a number"),
+        ("mass_kg = 1.0", "mass_kg = ", "is not TOML"),
+        ('law = "lugre"', 'law = "lugr"', "did you mean 'lugre'?"),
+    ],
+)
+@pytest.mark.parametrize("command", ["run", "design"])
+def test_a_wrong_scenario_is_explained(
+    call: Call, tmp_path: Path, command: str, old: str, new: str, words: str
+) -> None:
+    text = scenario_text(tmp_path)
+    assert old in text
+    path = tmp_path / "wrong.toml"
+    path.write_text(text.replace(old, new))
+    failed = call(command, path, "--json")
+    assert (failed.exit_code, failed.stdout) == (2, "")
+    assert failed.stderr.startswith(f"error: {path}:")
+    assert words in failed.stderr
+    assert "Traceback" not in failed.stderr
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (("run", "paper_as_computd"), "did you mean paper_as_computed?"),
+        (("run", "paper_as_computed", "--seed", "-1"), "seed: -1 is not >= 0"),
+        (("run", "paper_as_computed", "--seed", "x"), "--seed"),
+        (("run", "paper_as_computed", "--joint", "none.toml"), "there is no such file"),
+        (("run", "."), "can not be read as text"),
+        (("run",), "Missing argument"),
+        (("runn", "paper_as_computed"), "No such command"),
+        (("identify", "none.csv"), "none.csv: there is no such file"),
+        (("identify", "none.csv", "--format", "mat"), "--format"),
+        (("init", "x.toml", "--preset", "paper_as_print"), "did you mean paper_as_printed?"),
+    ],
+)
+def test_a_wrong_command_line_exits_with_2(
+    call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, args: Any, words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    failed = call(*args)
+    assert (failed.exit_code, failed.stdout) == (2, "")
+    assert words in failed.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("text", ["", "no toml", "[part]\nmass_kg = -1.0\n", "\0"])
+def test_a_broken_joint_file_exits_with_2(call: Call, tmp_path: Path, text: str) -> None:
+    path = tmp_path / "joint.toml"
+    path.write_text(text)
+    failed = call("run", "paper_as_computed", "--joint", path)
+    assert (failed.exit_code, failed.stdout) == (2, "")
+    assert failed.stderr.startswith("error: joint.toml: ")
+
+
+@pytest.mark.parametrize("place", ["file/out", "/dev/null/x"])
+def test_an_unwritable_place_exits_with_3(
+    call: Call, tmp_path: Path, log_csv: Path, place: str
+) -> None:
+    (tmp_path / "file").write_text("")
+    target = tmp_path / place  # which is /dev/null/x for that
+    for args in (
+        ("run", "paper_as_computed", "--out", target),
+        ("init", target),
+        ("schema", "--out", target),
+        ("identify", log_csv, "--out", target),
+    ):
+        failed = call(*args)
+        assert failed.exit_code == 3, args
+        assert f"{target}: can not be written: Not a directory" in failed.stderr
+    assert (tmp_path / "file").read_text() == ""
+
+
+def test_an_unwritable_folder_is_found_before_the_simulation(
+    call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = importlib.import_module("breakaway.simulate")
+    monkeypatch.setattr(home, "simulate", lambda *_: pytest.fail("simulated"))
+    (tmp_path / "file").write_text("")
+    assert call("run", "paper_as_computed", "--out", tmp_path / "file").exit_code == 3
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+@pytest.mark.parametrize("args", [["presets"], ["run", "paper_as_computed", "--json"], ["schema"]])
+def test_a_full_disk_behind_the_output_exits_with_3(args: list[str]) -> None:
+    with Path("/dev/full").open("wb") as full:
+        failed = subprocess.run(
+            [*COMMAND, *args], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert failed.returncode == 3
+    assert failed.stderr == (
+        "error: standard output: can not be written: No space left on device\n"
+    )
+
+
+def test_a_reader_that_stops_is_no_crash() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    ended = subprocess.run(
+        [*COMMAND, "schema"], stdout=write, stderr=subprocess.PIPE, text=True, check=False
+    )
+    os.close(write)
+    assert (ended.returncode, ended.stderr) == (3, "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_leaves_nothing_behind(tmp_path: Path) -> None:
+    scenario, out = tmp_path / "long.toml", tmp_path / "out"
+    changes = {"timing.duration_s": 50_000.0, "trace.every_samples": 1000}
+    bk.save_scenario(BASE.with_(changes), scenario)
+    process = subprocess.Popen(
+        [*COMMAND, "run", str(scenario), "--out", str(out)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not list(out.glob(".writing.*")):  # made right before the simulation
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    stdout, stderr = process.communicate(timeout=60)
+    assert (process.returncode, stdout, stderr) == (130, "", "interrupted\n")
+    assert list(out.iterdir()) == []

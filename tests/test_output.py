@@ -1,0 +1,136 @@
+"""Files are there whole or not at all."""
+
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+import breakaway as bk
+from breakaway.errors import OutputError
+from breakaway.output import output_folder, write_atomically
+from breakaway.run_output import run_summary, write_run
+
+
+def test_write_replaces_the_whole_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    for content in (b"long content", b"short"):
+        write_atomically(path, content)
+        assert path.read_bytes() == content
+    assert list(tmp_path.iterdir()) == [path]
+    umask = os.umask(0o022)
+    os.umask(umask)
+    assert path.stat().st_mode & 0o777 == 0o666 & ~umask
+
+
+@pytest.mark.parametrize("place", ["none/a.txt", "file/a.txt", "folder", "/dev/null/x"])
+def test_write_names_the_place_it_can_not_write(tmp_path: Path, place: str) -> None:
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(OutputError, match="can not be written"):
+        write_atomically(tmp_path / place, b"content")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "folder"]
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), OSError(28, "No space left on device")])
+def test_a_failed_write_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+    monkeypatch.setattr(os, "replace", fail)
+    with pytest.raises((OutputError, KeyboardInterrupt)):
+        write_atomically(path, b"new")
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_devices_and_pipes_stay_what_they_are(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    read: list[bytes] = []
+    reader = threading.Thread(target=lambda: read.append(pipe.read_bytes()))
+    reader.start()
+    write_atomically(pipe, b"content")
+    reader.join()
+    assert (read, pipe.is_fifo()) == ([b"content"], True)
+
+
+@pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="there is no /dev/full")
+def test_a_full_device_is_an_output_error() -> None:
+    with pytest.raises(OutputError, match="No space left on device"):
+        write_atomically(Path("/dev/full"), b"content")
+    assert Path("/dev/full").is_char_device()
+
+
+def test_a_folder_is_filled_at_the_end(tmp_path: Path) -> None:
+    folder = tmp_path / "deep" / "out"
+    with output_folder(folder) as staging:
+        (staging / "a.txt").write_text("a")
+        assert not (folder / "a.txt").exists()
+    assert [path.name for path in folder.iterdir()] == ["a.txt"]
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
+def test_a_folder_stays_as_it_was_when_its_block_fails(
+    tmp_path: Path, error: type[BaseException]
+) -> None:
+    (tmp_path / "a.txt").write_text("old")
+
+    def fail_halfway() -> None:
+        with output_folder(tmp_path) as staging:
+            (staging / "a.txt").write_text("new")
+            raise error
+
+    with pytest.raises(error):
+        fail_halfway()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+    assert (tmp_path / "a.txt").read_text() == "old"
+
+
+def test_a_run_is_summarized_without_nan() -> None:
+    short = bk.load_scenario("paper_as_computed").with_({"timing.duration_s": 0.01})
+    summary = run_summary(bk.simulate(short, run_index=7))
+    assert summary["run_index"] == 7
+    assert summary["metrics"]["time_to_release_s"] is None
+
+
+def test_a_numbered_run_says_how_it_runs_again(tmp_path: Path) -> None:
+    noisy = bk.load_scenario("paper_as_computed").with_(
+        {"disturbance.var": 0.05, "timing.duration_s": 0.02}
+    )
+    write_run(bk.simulate(noisy, run_index=7), tmp_path)
+    text = (tmp_path / "scenario.toml").read_text()
+    assert "run_index=7" in text.splitlines()[0]
+    again = bk.simulate(bk.load_scenario(tmp_path / "scenario.toml"), run_index=7)
+    write_run(again, tmp_path / "again")
+    first, second = (folder / "trace.parquet" for folder in (tmp_path, tmp_path / "again"))
+    assert first.read_bytes() == second.read_bytes()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+@pytest.mark.parametrize("limit", [100, 30_000, 300_000])
+def test_a_disk_that_fills_up_leaves_an_earlier_run_whole(tmp_path: Path, limit: int) -> None:
+    run = bk.simulate(bk.load_scenario("paper_as_computed"))
+    write_run(run, tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    script = (
+        "import resource, sys\n"
+        "import matplotlib.font_manager\n"  # which may write its cache
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))\n"
+        "from breakaway.cli.main import main\n"
+        "main()\n"
+    )
+    args = ["run", "paper_as_computed", "--seed", "1", "--out", str(tmp_path)]
+    failed = subprocess.run(
+        [sys.executable, "-c", script, *args], capture_output=True, text=True, check=False
+    )
+    assert (failed.returncode, failed.stdout) == (3, "")
+    assert failed.stderr.startswith(f"error: {tmp_path}: can not be written: ")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
