@@ -82,7 +82,7 @@ def test_a_broken_joint_file_exits_with_2(call: Call, tmp_path: Path, text: str)
     path.write_text(text)
     failed = call("run", "paper_as_computed", "--joint", path)
     assert (failed.exit_code, failed.stdout) == (2, "")
-    assert failed.stderr.startswith("error: joint.toml: ")
+    assert failed.stderr.startswith("error: joint.toml:")
 
 
 @pytest.mark.parametrize("place", ["file/out", "/dev/null/x"])

@@ -29,8 +29,9 @@ class Terminal(io.StringIO):
 @pytest.fixture
 def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     made = Terminal()
+    monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "30")
-    monkeypatch.setenv("TERM", "dumb")
+    monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("FORCE_COLOR", raising=False)
     return made
 
@@ -44,8 +45,9 @@ def test_a_narrow_terminal_hides_no_number(
     sheet.add("another", "1", "")
     say(sheet)
     shown = terminal.getvalue()
-    for words in ("a name that is long", "-1234567.891 kN", "more"):
+    for words in ("a name that is long", "-1234567.891 kN", "more", "another"):
         assert words in shown
+    assert max(len(line) for line in shown.splitlines()) > 30  # than to break a number
     assert "…" not in shown
 
 
@@ -59,6 +61,7 @@ def test_text_is_not_markup(terminal: Terminal, monkeypatch: pytest.MonkeyPatch)
 
 
 def test_an_old_encoding_is_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("FORCE_COLOR", raising=False)
     raw = io.BytesIO()
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(raw, encoding="ascii"))
     sheet = Sheet("", ["a"])

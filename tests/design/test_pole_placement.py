@@ -160,6 +160,19 @@ def test_a_joint_whose_friction_does_not_fall_has_no_dynamic_gains():
         designed("with", same)
 
 
+@pytest.mark.parametrize(
+    "extreme",
+    [
+        {"settling_time_s": 5e-324},  # gains without bound
+        {"settling_time_s": 1e-200, "damping_ratio": 1e-200},  # their product is zero
+        {"pole_per_s": 1.7e308},
+    ],
+)
+def test_gains_that_are_no_numbers_are_refused(extreme):
+    with pytest.raises(bk.ScenarioError):
+        designed("with", **extreme)
+
+
 def test_misspelled_design_values_are_refused():
     with pytest.raises(TypeError, match="dampin_ratio"):
         designed("with", dampin_ratio=1.0)

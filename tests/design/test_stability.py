@@ -124,6 +124,12 @@ def test_a_law_without_stribeck_curve_says_so():
     assert verdict.stuck == bk.design.stability(WITHOUT, JOINT, mass_kg=1.0).stuck
 
 
+@pytest.mark.parametrize("mass_kg", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_mass_out_of_range_is_refused(mass_kg):
+    with pytest.raises(bk.ScenarioError, match=rf"^mass_kg: {mass_kg!r} is not > 0"):
+        bk.design.stability(WITHOUT, JOINT, mass_kg=mass_kg)
+
+
 @pytest.mark.parametrize("growth", ["unstable", "stable"])
 def test_verdict_while_sliding_is_what_a_run_does(growth):
     """With no friction to speak of, a run follows the poles: the unstable loop diverges."""

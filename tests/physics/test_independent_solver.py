@@ -5,6 +5,8 @@ the difference must halve with the period, and vanish under Richardson extrapola
 is the same for both leaves the integrator alone, which must show its order.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -93,11 +95,11 @@ def test_sampled_loop_converges_on_the_continuous_one(joint, resolved, scipy_lug
     ratios = np.divide(errors[:-1], errors[1:])
     assert np.all((ratios > 1.85) & (ratios < 2.1)), ratios
     # Richardson: the term in h is gone, what is left falls with h squared ...
-    once = [2 * fine - coarse for coarse, fine in zip(positions, positions[1:], strict=False)]
+    once = [2 * fine - coarse for coarse, fine in pairwise(positions)]
     assert 3.7 < worst(once[0]) / worst(once[1]) < 4.3
     # ... and is gone in turn after another extrapolation.
     assert worst((4 * once[1] - once[0]) / 3) < 3e-10
-    iae = [2 * fine - coarse for coarse, fine in zip(iaes, iaes[1:], strict=False)]
+    iae = [2 * fine - coarse for coarse, fine in pairwise(iaes)]
     assert (4 * iae[1] - iae[0]) / 3 == pytest.approx(expected[4, -1], rel=1e-6)
 
 

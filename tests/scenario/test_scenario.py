@@ -265,7 +265,9 @@ def test_resolving_again_changes_nothing(paper, vibrating):
 
 
 def test_a_joint_without_a_design_says_why(paper):
-    with pytest.raises(bk.ScenarioError, match=r"^joint\.coulomb_n: 5\.0 is not > .*give the gains"):
+    with pytest.raises(
+        bk.ScenarioError, match=r"^joint\.coulomb_n: 5\.0 is not > .*give the gains"
+    ):
         bk.simulate(paper.with_({"joint.coulomb_n": 5.0}))
 
 
@@ -432,5 +434,9 @@ def test_the_schema_describes_every_field(sites):
     schema = bk.scenario_schema()
     for site in sites:
         assert site.field.description, site.label
-    assert np.all([definition["additionalProperties"] is False for definition in schema["$defs"].values()])
-    assert math.isclose(schema["$defs"]["Timing"]["properties"]["control_period_s"]["default"], 1e-5)
+    assert np.all(
+        [definition["additionalProperties"] is False for definition in schema["$defs"].values()]
+    )
+    assert math.isclose(
+        schema["$defs"]["Timing"]["properties"]["control_period_s"]["default"], 1e-5
+    )

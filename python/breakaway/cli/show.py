@@ -51,13 +51,13 @@ def say(*parts: RenderableType) -> None:
     """
     collected = _Collected()
     console = _Console(file=collected, highlight=False)
-    if not sys.stdout.isatty():
-        console.width = PIPED_WIDTH
+    available = console.width if sys.stdout.isatty() else PIPED_WIDTH
     for part in parts:
         shown = Text(part) if isinstance(part, str) else part
-        needed = Measurement.get(console, console.options, shown).minimum
+        wide = console.options.update(width=PIPED_WIDTH)
         # A terminal that is too narrow for the numbers breaks the lines by itself.
-        console.print(shown, width=max(console.width, needed), crop=False)
+        console.width = max(available, Measurement.get(console, wide, shown).minimum)
+        console.print(shown)
     _write("\n".join(line.rstrip() for line in collected.getvalue().split("\n")))
 
 

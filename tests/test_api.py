@@ -1,0 +1,414 @@
+"""The public face: its names, their documentation, and that runs can be reproduced."""
+
+import inspect
+import re
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from math import ceil
+
+import numpy as np
+import pytest
+
+import breakaway as bk
+
+COLUMNS = (
+    "t_s",
+    "reference_m",
+    "position_m",
+    "velocity_m_per_s",
+    "bristle_m",
+    "applied_force_n",
+    "joint_force_n",
+)
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return bk.load_scenario("paper_as_computed")
+
+
+@pytest.fixture(scope="module")
+def rough(scenario):
+    """Disturbed, short, and every sample traced."""
+    return scenario.with_(
+        {"timing.duration_s": 0.05, "trace.every_samples": 1},
+        disturbance=bk.UniformDisturbance(var=0.2, hold_s=1e-4),
+        seed=3,
+    )
+
+
+def assert_same_bits(one, other):
+    assert one.outcome == other.outcome
+    assert repr(one.metrics) == repr(other.metrics)  # repr, since NaN is not equal to itself
+    for name in COLUMNS:
+        assert one.trace[name].tobytes() == other.trace[name].tobytes(), name
+
+
+# The words that a user writes
+
+
+def test_simulating():
+    scenario = bk.load_scenario("paper_as_computed")
+    run = bk.simulate(scenario)
+    assert run.outcome == bk.Outcome.RELEASED == "released"
+    assert run.metrics.iae_m_s == pytest.approx(3.036e-6, rel=1e-3)
+    assert run.metrics.peak_force_n == pytest.approx(601.3, abs=0.2)
+    assert run.seed == scenario.seed
+    assert tuple(run.trace) == COLUMNS
+    for name in COLUMNS:
+        column = run.trace[name]
+        assert (column.dtype, column.shape) == (np.float64, (5001,))
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = 1.0
+    with pytest.raises(TypeError):
+        run.trace["t_s"] = np.zeros(3)
+
+
+def test_dataset(rough):
+    run = bk.simulate(rough)
+    data = run.to_xarray()
+    assert set(data.data_vars) == set(COLUMNS) - {"t_s"}
+    assert data["position_m"].dims == ("t_s",)
+    for name in COLUMNS:
+        np.testing.assert_array_equal(data[name].values, run.trace[name])
+        unit = {"n": "N", "s": "m/s" if "velocity" in name else "s", "m": "m"}
+        assert data[name].attrs["units"] == unit[name.rpartition("_")[2]]
+    assert data.attrs["seed"] == 3
+    assert data.attrs["outcome"] == run.outcome
+
+
+def test_designing(scenario):
+    gains = bk.design.pole_placement(
+        scenario.joint, mass_kg=1.0, settling_time_s=5e-4, damping_ratio=1.0, pole_per_s=200.0
+    )
+    for part in (gains.static, gains.dynamic, gains.total):
+        assert all(np.isfinite([part.kp, part.ki, part.kd]))
+    run = bk.simulate(scenario)
+    given = run.scenario.controller.gains
+    assert (given.kp_n_per_m, given.ki_n_per_m_s, given.kd_n_s_per_m) == (
+        gains.total.kp,
+        gains.total.ki,
+        gains.total.kd,
+    )
+
+
+def test_changing(scenario):
+    changed = scenario.with_(disturbance=bk.UniformDisturbance(var=0.05, hold_s=1e-4), seed=7)
+    assert (changed.disturbance.var, changed.seed) == (0.05, 7)
+    assert bk.simulate(changed).seed == 7
+
+
+@pytest.mark.parametrize("first", ["simulate", "resolve", "impose_motion"])
+def test_names_are_functions_whatever_is_used_first(first):
+    """`breakaway.simulate` is a function and a module of that name: the function must win."""
+    code = (
+        f"import breakaway as bk; bk.{first}; import breakaway.simulate, breakaway.resolve\n"
+        "scenario = bk.load_scenario('paper_as_computed')\n"
+        "assert bk.simulate(bk.resolve(scenario)).outcome == 'released'\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+# Names and their documentation
+
+HOMES = [(bk, name) for name in bk.__all__] + [(bk.design, name) for name in bk.design.__all__]
+
+
+@pytest.mark.parametrize(("home", "name"), HOMES, ids=[name for _, name in HOMES])
+def test_every_name_resolves_and_is_documented(home, name):
+    value = getattr(home, name)
+    if name == "__version__":
+        assert re.fullmatch(r"\d+\.\d+\.\d+.*", value)
+        return
+    assert inspect.isclass(value) or inspect.isfunction(value) or inspect.ismodule(value)
+    assert len(value.__doc__ or "") > 10
+    inherited = (base.__doc__ for base in getattr(value, "__mro__", ())[1:])
+    assert value.__doc__ not in inherited
+
+
+def test_names_are_sorted_and_unique():
+    assert bk.__all__ == sorted(set(bk.__all__))
+    assert bk.__dir__() == bk.__all__
+    with pytest.raises(AttributeError, match="simulat"):
+        _ = bk.simulat
+
+
+def public_functions():
+    for home, name in HOMES:
+        value = getattr(home, name)
+        if inspect.isfunction(value):
+            yield name, value
+        elif inspect.isclass(value):
+            for inner, method in vars(value).items():
+                function = getattr(method, "__func__", method)
+                if not inner.startswith("_") and inspect.isfunction(function):
+                    yield f"{name}.{inner}", function
+
+
+FUNCTIONS = dict(public_functions())
+
+
+def parameters_of(function):
+    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
+    return {
+        name: stars.get(parameter.kind, "")
+        for name, parameter in inspect.signature(function).parameters.items()
+        if name not in ("self", "cls")
+    }
+
+
+def test_functions_are_found():
+    assert {"simulate", "resolve", "pole_placement", "Scenario.with_", "Run.to_xarray"} <= set(
+        FUNCTIONS
+    )
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_parameter_is_documented(name):
+    """In a section of its own, as `numpydoc` has it; and no parameter that is not there."""
+    text = inspect.getdoc(FUNCTIONS[name]) or ""
+    assert text, name
+    _, _, after = text.partition("Parameters\n----------\n")
+    section = re.split(r"\n\w+\n-+\n", after)[0]
+    documented = re.findall(r"^(\*{0,2}\w+)(?: : .+)?$", section, re.MULTILINE)
+    expected = [stars + parameter for parameter, stars in parameters_of(FUNCTIONS[name]).items()]
+    assert documented == expected
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_unknown_arguments_are_refused(name):
+    if name == "Scenario.with_":  # by name, in tests/scenario
+        return
+    with pytest.raises(TypeError, match="no_such_argument"):
+        inspect.signature(FUNCTIONS[name]).bind_partial(no_such_argument=1)
+    with pytest.raises(TypeError, match=r"no_such_argument|missing|argument"):
+        FUNCTIONS[name](no_such_argument=1)
+
+
+def test_every_figure_is_documented_with_its_unit():
+    source = inspect.getsource(bk.RunMetrics)
+    for name in bk.RunMetrics.__dataclass_fields__:
+        assert re.search(rf'{name}: float\n    """.+', source), name
+
+
+@pytest.mark.parametrize("run_index", [-1, 2**64, 1.5, "0", None])
+def test_a_run_index_out_of_range_is_refused(scenario, run_index):
+    with pytest.raises(bk.ScenarioError, match=rf"^run_index: {run_index!r} is not"):
+        bk.simulate(scenario, run_index=run_index)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("velocity_m_per_s", [[1e-3]]),
+        ("velocity_m_per_s", [float("nan")]),
+        ("velocity_m_per_s", [float("inf")]),
+        ("period_s", 0.0),
+        ("period_s", -1e-3),
+        ("period_s", float("nan")),
+        ("period_s", float("inf")),
+        ("start_m", float("nan")),
+        ("start_m", float("inf")),
+    ],
+)
+def test_an_imposed_motion_out_of_range_is_refused(scenario, name, value):
+    joint = scenario.joint.model_copy(update={"residual_n": 9.81})
+    good = {"velocity_m_per_s": [1e-3] * 3, "period_s": 1e-3, "start_m": 0.0}
+    assert bk.impose_motion(joint, **good).joint_force_n.size == 3
+    with pytest.raises(bk.ScenarioError, match=rf"^{name}: "):
+        bk.impose_motion(joint, **{**good, name: value})
+    with pytest.raises(bk.ScenarioError, match=r"^joint\.residual_n: is missing; give"):
+        bk.impose_motion(scenario.joint, **good)
+
+
+# Reproducibility
+
+
+def test_same_seed_and_run_give_the_same_bits(rough):
+    assert_same_bits(bk.simulate(rough, run_index=5), bk.simulate(rough, run_index=5))
+
+
+def test_other_seeds_and_runs_differ(rough):
+    def mark(scenario, run_index=0):
+        return bk.simulate(scenario, run_index=run_index).metrics.iae_m_s
+
+    runs = {mark(rough, index) for index in (0, 1, 2, 2**32, 2**64 - 1)}
+    seeds = {mark(rough.with_(seed=seed)) for seed in (0, 1, 2**32, 2**63 - 1)}
+    assert len(runs | seeds) == 9
+
+
+def test_without_a_disturbance_seeds_do_not_matter(rough):
+    calm = rough.with_({"disturbance.var": 0.0})
+    assert_same_bits(bk.simulate(calm), bk.simulate(calm.with_(seed=8), run_index=3))
+
+
+def test_threads_do_not_matter(rough):
+    alone = [bk.simulate(rough, run_index=index) for index in range(8)]
+    with ThreadPoolExecutor(max_workers=4) as pool:
+        together = list(pool.map(lambda index: bk.simulate(rough, run_index=index), range(8)))
+    for one, other in zip(alone, together, strict=True):
+        assert_same_bits(one, other)
+
+
+# Trace and figures
+
+
+@pytest.mark.parametrize("every", [2, 7, 10, 4999, 5000, 100_000])
+def test_traces_agree_row_by_row(rough, every):
+    full = bk.simulate(rough)
+    sparse = bk.simulate(rough.with_({"trace.every_samples": every}))
+    rows = np.append(np.arange(0, 5000, every), 5000)  # the end is always there
+    for name in COLUMNS:
+        np.testing.assert_array_equal(sparse.trace[name], full.trace[name][rows], err_msg=name)
+    assert repr(sparse.metrics) == repr(full.metrics)
+
+
+def test_without_a_trace_the_figures_are_the_same(rough):
+    silent = bk.simulate(rough.with_({"trace.every_samples": 0}))
+    assert all(column.size == 0 for column in silent.trace.values())
+    assert repr(silent.metrics) == repr(bk.simulate(rough).metrics)
+
+
+@pytest.mark.parametrize("every", [10, 1000])
+def test_the_trace_of_a_run_that_diverges_ends_where_it_does(scenario, every):
+    unstable = scenario.with_(
+        {
+            "controller.gains": bk.Gains(  # Table II with vibration
+                kp_n_per_m=828.2e3, ki_n_per_m_s=823940e3, kd_n_s_per_m=662.5
+            ),
+            "trace.every_samples": 1,
+            "timing.duration_s": 0.25,
+        }
+    )
+    full = bk.simulate(unstable)
+    assert full.outcome == "diverged"
+    assert full.metrics.simulated_s < 0.249
+    sparse = bk.simulate(unstable.with_({"trace.every_samples": every}))
+    assert repr(sparse.metrics) == repr(full.metrics)
+    for run in (full, sparse):
+        t_s = run.trace["t_s"]
+        assert np.all(np.diff(t_s) > 0)
+        assert t_s[-1] <= run.metrics.simulated_s + 2 * 1e-5
+    rows = np.rint(sparse.trace["t_s"] / 1e-5).astype(int)
+    shared = rows < full.trace["t_s"].size - 1
+    assert shared.sum() >= 20
+    for name in COLUMNS:
+        np.testing.assert_array_equal(
+            sparse.trace[name][shared], full.trace[name][rows[shared]], err_msg=name
+        )
+
+
+def test_figures_follow_from_a_full_trace(rough):
+    """By numpy's sums over the samples; the last row is the state at the end, not a sample."""
+    run = bk.simulate(rough)
+    period = 1e-5
+    t, r, x, _, _, force, joint_force = (run.trace[name][:-1] for name in COLUMNS)
+    error, travel = np.abs(r - x), np.diff(run.trace["position_m"])
+    expected = {
+        "iae_m_s": np.sum(error) * period,
+        "ise_m2_s": np.sum(error**2) * period,
+        "itae_m_s2": np.sum(t * error) * period,
+        "largest_error_m": error.max(),
+        "peak_over_breakaway": np.abs(force).max() / 450.0,
+        "mean_force_n": force.mean(),
+        "rms_force_n": np.sqrt(np.mean(force**2)),
+        "impulse_n_s": np.sum(force) * period,
+        "work_j": np.sum(force * travel),
+        "friction_loss_j": np.sum(joint_force * travel)
+        - 0.5 * 3.6e7 * run.trace["bristle_m"][-1] ** 2,
+        "contact_time_s": np.sum(force > 0) * period,
+        "simulated_s": 0.05,
+    }
+    for name, value in expected.items():
+        assert getattr(run.metrics, name) == pytest.approx(value, rel=1e-9), name
+    assert run.metrics.peak_force_n == np.abs(force).max()
+    assert run.metrics.final_position_m == run.trace["position_m"][-1]
+    pushes = np.diff(np.r_[0, (force > 0).astype(int)]) == 1
+    assert run.metrics.impacts == pushes.sum()
+    loose = run.trace["position_m"] > 2 * 450.0 / 3.6e7
+    assert run.metrics.time_to_breakaway_s == pytest.approx(run.trace["t_s"][loose.argmax()])
+    assert np.isnan(run.metrics.time_to_release_s)
+    assert run.metrics.to_dict()["time_to_release_s"] is None
+
+
+def test_energy_is_conserved(rough):
+    """Work of the actuator = kinetic energy + work on the joint, exactly so for held forces."""
+    run = bk.simulate(rough)
+    x, v = run.trace["position_m"], run.trace["velocity_m_per_s"]
+    work = np.cumsum(run.trace["applied_force_n"][:-1] * np.diff(x))
+    on_joint = np.cumsum(run.trace["joint_force_n"][:-1] * np.diff(x))
+    np.testing.assert_allclose(work - on_joint, 0.5 * v[1:] ** 2, rtol=0, atol=1e-12 * work[-1])
+
+
+# Random draws
+
+
+def philox4x32(counter, key):
+    """Philox4x32-10 from its paper: Salmon, Moraes, Dror and Shaw, SC 2011."""
+    c, k, mask = list(counter), list(key), 0xFFFFFFFF
+    for _ in range(10):
+        low, high = c[0] * 0xD2511F53, c[2] * 0xCD9E8D57
+        c = [(high >> 32) ^ c[1] ^ k[0], high & mask, (low >> 32) ^ c[3] ^ k[1], low & mask]
+        k = [(k[0] + 0x9E3779B9) & mask, (k[1] + 0xBB67AE85) & mask]
+    return c
+
+
+def uniform(seed, run, index):
+    """Draw number `index` of the disturbance (stream 0): uniform on [-1, 1), 53 bits."""
+    words = philox4x32([index, 0, run & 0xFFFFFFFF, run >> 32], [seed & 0xFFFFFFFF, seed >> 32])
+    return (((words[1] << 32) | words[0]) >> 11) * 2.0**-52 - 1.0
+
+
+def test_philox_known_answers():
+    """Vectors published with Random123."""
+    ones = 0xFFFFFFFF
+    assert philox4x32([0] * 4, [0] * 2) == [0x6627E8D5, 0xE169C58D, 0xBC57AC4C, 0x9B00DBD8]
+    assert philox4x32([ones] * 4, [ones] * 2) == [0x408F276D, 0x41C83B0E, 0xA20BC7C6, 0x6D5451FD]
+
+
+@pytest.mark.parametrize("hold_s", [1e-5, 1e-4, 3.7e-5])
+@pytest.mark.parametrize(("seed", "run_index"), [(0, 0), (7, 3), (2**63 - 1, 2**64 - 2)])
+def test_draws_are_philox(scenario, seed, run_index, hold_s):
+    """The factor on the joint force, from the trace of a midpoint step: R = k_e z + c dz/dt."""
+    var, samples = 0.3, 400
+    run = bk.simulate(
+        scenario.with_(
+            {"timing.duration_s": samples * 1e-5, "trace.every_samples": 1},
+            disturbance=bk.UniformDisturbance(var=var, hold_s=hold_s),
+            reference=bk.StepReference(distance_m=1e-4),
+            seed=seed,
+        ),
+        run_index=run_index,
+    )
+    z = run.trace["bristle_m"]
+    undisturbed = 3.6e7 * (z[1:] + z[:-1]) / 2 + 9000.0 * np.diff(z) / 1e-5
+    factor = run.trace["joint_force_n"][:-1] / undisturbed
+    first_samples = [ceil(j * hold_s / 1e-5 - 1e-6) for j in range(samples + 1)]
+    draws = np.searchsorted(first_samples, np.arange(samples), side="right") - 1
+    expected = [1.0 + var * uniform(seed, run_index, int(j)) for j in draws]
+    clear = np.abs(undisturbed) > 1.0  # elsewhere rounding is divided by little
+    assert clear.sum() > 0.9 * samples
+    np.testing.assert_allclose(factor[clear], np.array(expected)[clear], rtol=1e-9)
+
+
+def test_a_disturbed_friction_level_leaves_a_stuck_joint_at_rest(scenario):
+    """What multiplies the joint force jolts it; what multiplies the friction level does not."""
+
+    def travel(acts_on):
+        held = scenario.with_(
+            {
+                "controller.gains": bk.Gains(kp_n_per_m=100.0, ki_n_per_m_s=0.0, kd_n_s_per_m=0.0),
+                "limits.diverged_error_m": 10.0,
+                "timing.duration_s": 0.2,
+            },
+            reference=bk.StepReference(distance_m=1.0),  # 100 N of the 450 N that it takes
+            disturbance=bk.UniformDisturbance(var=0.3, hold_s=1e-3, acts_on=acts_on),
+        )
+        run = bk.simulate(held)
+        late = run.trace["t_s"] > 0.01
+        return np.ptp(run.trace["position_m"][late])
+
+    assert travel("friction_level") < 1e-9
+    assert travel("joint_force") > 1e-6
