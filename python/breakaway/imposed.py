@@ -66,6 +66,8 @@ def impose_motion(
         raise ScenarioError("velocity_m_per_s: is not a one-dimensional array of finite numbers")
     if not 0.0 < period_s < float("inf"):
         raise ScenarioError(f"period_s: {period_s!r} is not > 0 and finite; give a time in s")
+    if not -float("inf") < start_m < float("inf"):
+        raise ScenarioError(f"start_m: {start_m!r} is not finite; give a position in m")
     if joint.residual_n is None:
         raise ScenarioError("joint.residual_n: is missing; give a number > 0, such as the weight")
     columns = _core.impose(joint.model_dump(), start_m, period_s, velocity.tolist())

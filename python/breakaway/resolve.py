@@ -22,6 +22,16 @@ def resolve(scenario: Scenario) -> Scenario:
     The result runs bit-identically to the scenario, and on its own: designed gains stay as they
     are when its joint is changed, as a controller does that does not know its part.
 
+    Parameters
+    ----------
+    scenario : Scenario
+        What is resolved; it does not change.
+
+    Raises
+    ------
+    ScenarioError
+        The controller can not be designed for this joint.
+
     Examples
     --------
     >>> import breakaway as bk

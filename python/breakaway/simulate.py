@@ -43,8 +43,8 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
     ('released', '3.0361e-06', '601.4')
 
     """
-    if not 0 <= run_index < 2**64:
-        raise ScenarioError(f"run_index: {run_index!r} is not within 0 to 2^64 - 1")
+    if not isinstance(run_index, int) or not 0 <= run_index < 2**64:
+        raise ScenarioError(f"run_index: {run_index!r} is not a whole number within 0 to 2^64 - 1")
     resolved = resolve(scenario)
     outcome, figures, columns = _core.run_one(core_job(resolved, run_index))
     trace = {name: np.frombuffer(values) for name, values in columns.items()}

@@ -318,17 +318,18 @@ def test_pulses_do_not_overlap(vibrating):
 def test_a_draw_is_held_for_a_period_at_least(paper):
     refused(
         paper,
-        {"disturbance.hold_s": 0.9e-5},
+        {"disturbance.hold_s": 0.9e-5, "disturbance.var": 0.1},
         "disturbance.hold_s: 9e-06 is not >= timing.control_period_s = 1e-05",
     )
-    paper.with_({"disturbance.hold_s": 1e-5})
+    paper.with_({"disturbance.hold_s": 1e-5, "disturbance.var": 0.1})
+    paper.with_({"disturbance.hold_s": 0.9e-5, "disturbance.var": 0.0})  # nothing is drawn
 
 
 def test_a_run_is_whole_periods(paper):
     refused(
         paper,
         {"timing.duration_s": 0.500004},
-        "timing.duration_s: 0.500004 is not a whole number of control periods of 1e-05 s",
+        "timing.duration_s: 0.500004 is not a whole number of timing.control_period_s = 1e-05",
         "give 0.5",
     )
     assert paper.with_({"timing.duration_s": 0.3}).samples == 30_000  # 0.3 / 1e-5 is not whole

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 
 from breakaway.errors import ScenarioError
 from breakaway.scenario.joint import SeizedJoint
@@ -102,7 +103,7 @@ def pole_placement(
     3137.3
 
     """
-    _check_positive(
+    check_positive(
         mass_kg=mass_kg,
         settling_time_s=settling_time_s,
         damping_ratio=damping_ratio,
@@ -118,15 +119,27 @@ def pole_placement(
             "give the gains as numbers"
         )
     a, m = pole_per_s, mass_kg
-    w = 4.0 / (damping_ratio * settling_time_s)
+    slowness = damping_ratio * settling_time_s
+    m2 = (joint.coulomb_n - end_n) / joint.engagement_length_m
+    if slowness == 0.0 or m2 == 0.0:
+        raise ScenarioError(_NO_NUMBERS)
+    w = 4.0 / slowness
     second_order = 2.0 * damping_ratio * w
     k_wanted, c_wanted, ki = (w * w + a * second_order) * m, (second_order + a) * m, a * w * w * m
-    m2 = (joint.coulomb_n - end_n) / joint.engagement_length_m
     static = PidGains(
         kp=k_wanted - joint.stiffness_n_per_m, ki=ki, kd=c_wanted - joint.damping_n_s_per_m
     )
     dynamic = PidGains(kp=k_wanted / m2 - 1.0, ki=ki / m2, kd=c_wanted / m2)
-    return GainSet(static, dynamic, _weighted(static_share, static, dynamic), w)
+    total = _weighted(static_share, static, dynamic)
+    if not all(isfinite(gain) for gain in (total.kp, total.ki, total.kd)):
+        raise ScenarioError(_NO_NUMBERS)
+    return GainSet(static, dynamic, total, w)
+
+
+_NO_NUMBERS = (
+    "controller.gains: the design gives gains beyond all numbers; give a settling_time_s, "
+    "damping_ratio and pole_per_s nearer to 1"
+)
 
 
 def _weighted(share: float, static: PidGains, dynamic: PidGains) -> PidGains:
@@ -138,7 +151,8 @@ def _weighted(share: float, static: PidGains, dynamic: PidGains) -> PidGains:
     )
 
 
-def _check_positive(**values: float) -> None:
+def check_positive(**values: float) -> None:
+    """Refuse what is not above zero and finite, by its name."""
     for name, value in values.items():
         if not 0.0 < value < float("inf"):
             raise ScenarioError(f"{name}: {value!r} is not > 0 and finite; give a number > 0")

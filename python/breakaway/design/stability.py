@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from breakaway.design.pole_placement import PidGains
+from breakaway.design.pole_placement import PidGains, check_positive
 from breakaway.scenario.joint import Lugre, SeizedJoint
 
 
@@ -65,6 +65,7 @@ def stability(gains: PidGains, joint: SeizedJoint, mass_kg: float) -> Stability:
     (True, False)
 
     """
+    check_positive(mass_kg=mass_kg)
     k_e, c = joint.stiffness_n_per_m, joint.damping_n_s_per_m
     return Stability(
         stuck=_routh_hurwitz(c + gains.kd, k_e + gains.kp, gains.ki, mass_kg),

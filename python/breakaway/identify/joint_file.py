@@ -123,7 +123,14 @@ class JointFile(Model):
 
     @classmethod
     def from_fit(cls, fit: InertiaFrictionFit, log: Log) -> JointFile:
-        """Gather the figures of ``fit``, which was made from ``log``.
+        """Gather the figures of a fit.
+
+        Parameters
+        ----------
+        fit : InertiaFrictionFit
+            What was identified.
+        log : Log
+            What it was identified from.
 
         Raises
         ------
@@ -184,6 +191,11 @@ class JointFile(Model):
     def save(self, path: str | Path) -> None:
         """Write the file whole or not at all.
 
+        Parameters
+        ----------
+        path : str or Path
+            The file; its folder must exist.
+
         Raises
         ------
         OutputError
@@ -196,6 +208,11 @@ class JointFile(Model):
     @classmethod
     def load(cls, path: str | Path) -> JointFile:
         """Read a joint file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
 
         Raises
         ------

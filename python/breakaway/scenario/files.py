@@ -30,6 +30,11 @@ def preset_names() -> list[str]:
 def load_scenario(source: str | Path) -> Scenario:
     """Load a scenario: a preset by its name, or a TOML file by its path.
 
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, or the path of a file.
+
     Raises
     ------
     ScenarioError
@@ -93,7 +98,21 @@ def scenario_toml(scenario: Scenario) -> str:
 
 
 def save_scenario(scenario: Scenario, path: str | Path) -> None:
-    """Write the scenario as TOML, whole or not at all."""
+    """Write the scenario as TOML, whole or not at all.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is written.
+    path : str or Path
+        The file; its folder must exist.
+
+    Raises
+    ------
+    OutputError
+        The file can not be written.
+
+    """
     write_atomically(Path(path), scenario_toml(scenario).encode())
 
 

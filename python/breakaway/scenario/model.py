@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
@@ -163,7 +164,7 @@ def _wanted(owner: type[BaseModel] | None, name: str) -> str:
 
 def valid_range(owner: type[BaseModel] | None, name: str) -> str:
     """The valid range of a field in words, such as ``a number > 0``."""
-    schema = owner.model_json_schema()["properties"].get(name, {}) if owner else {}
+    schema = _properties(owner).get(name, {}) if owner else {}
     options = [o for o in schema.get("anyOf", [schema]) if o.get("type") != "null"]
     option = options[0] if options else {}
     signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
@@ -177,3 +178,9 @@ def valid_range(owner: type[BaseModel] | None, name: str) -> str:
         "string": "a text",
     }.get(option.get("type", ""), "a table")
     return f"{word} {bounds}".strip()
+
+
+@functools.cache
+def _properties(model: type[BaseModel]) -> dict[str, Any]:
+    properties: dict[str, Any] = model.model_json_schema()["properties"]
+    return properties

@@ -16,7 +16,7 @@ from breakaway.scenario.model import Model
 from breakaway.scenario.reference import Reference
 from breakaway.scenario.run import Limits, Timing, Trace
 
-SAMPLES_MAX = 10_000_000_000
+SAMPLES_MAX = 4_000_000_000
 """Most integration steps of one run."""
 ROWS_MAX = 50_000_000
 """Most rows of one trace."""
@@ -87,8 +87,8 @@ class Scenario(Model):
         whole = max(1, round(ratio))
         if abs(ratio - whole) > 1e-6:
             raise ValueError(
-                f"timing.duration_s: {duration!r} is not a whole number of control periods of "
-                f"{period!r} s; give {whole * period!r}"
+                f"timing.duration_s: {duration!r} is not a whole number of "
+                f"timing.control_period_s = {period!r}; give {whole * period!r}"
             )
         every = self.trace.every_samples
         if every and ratio / every > ROWS_MAX:
@@ -101,7 +101,7 @@ class Scenario(Model):
     @model_validator(mode="after")
     def _holds_at_least_one_period(self) -> Self:
         hold, period = self.disturbance.hold_s, self.timing.control_period_s
-        if hold < period * (1 - 1e-9):
+        if self.disturbance.var > 0.0 and hold < period * (1 - 1e-9):
             raise ValueError(
                 f"disturbance.hold_s: {hold!r} is not >= timing.control_period_s = {period!r}; "
                 "the joint force is constant over a control period"
