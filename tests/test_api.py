@@ -101,9 +101,9 @@ def test_changing(scenario):
 
 @pytest.mark.parametrize("first", ["simulate", "resolve", "impose_motion"])
 def test_names_are_functions_whatever_is_used_first(first):
-    """`breakaway.simulate` is a function and a module of that name: the function must win."""
+    """Importing a module must not put it in the place of a function."""
     code = (
-        f"import breakaway as bk; bk.{first}; import breakaway.simulate, breakaway.resolve\n"
+        f"import breakaway as bk; bk.{first}; import breakaway.simulation, breakaway.resolution\n"
         "scenario = bk.load_scenario('paper_as_computed')\n"
         "assert bk.simulate(bk.resolve(scenario)).outcome == 'released'\n"
     )

@@ -9,8 +9,6 @@
 from __future__ import annotations
 
 import importlib
-import sys
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from breakaway._core import __version__
@@ -21,7 +19,7 @@ if TYPE_CHECKING:
     from breakaway.identify import JointFile, identify_inertia_friction
     from breakaway.imposed import ImposedMotion, impose_motion
     from breakaway.logs import Log, read_log
-    from breakaway.resolve import resolve
+    from breakaway.resolution import resolve
     from breakaway.run import Outcome, Run, RunMetrics
     from breakaway.scenario import (
         FmPulses,
@@ -50,14 +48,14 @@ if TYPE_CHECKING:
         save_scenario,
         scenario_schema,
     )
-    from breakaway.simulate import simulate
+    from breakaway.simulation import simulate
 
 # Where each public name lives; loaded on first use, so that `import breakaway` stays quick.
 _HOMES = {
     "breakaway.identify": ("JointFile", "identify_inertia_friction"),
     "breakaway.imposed": ("ImposedMotion", "impose_motion"),
     "breakaway.logs": ("Log", "read_log"),
-    "breakaway.resolve": ("resolve",),
+    "breakaway.resolution": ("resolve",),
     "breakaway.run": ("Outcome", "Run", "RunMetrics"),
     "breakaway.scenario": (
         "FmPulses",
@@ -86,7 +84,7 @@ _HOMES = {
         "save_scenario",
         "scenario_schema",
     ),
-    "breakaway.simulate": ("simulate",),
+    "breakaway.simulation": ("simulate",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -149,15 +147,3 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the name stands fo
 
 def __dir__() -> list[str]:
     return __all__
-
-
-class _Package(ModuleType):
-    """Keeps `simulate` and `resolve` the functions once the modules of that name are imported."""
-
-    def __setattr__(self, name: str, value: object) -> None:
-        if isinstance(value, ModuleType) and _HOME_OF.get(name) == value.__name__:
-            value = getattr(value, name)
-        super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.errors import ScenarioError
 from breakaway.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -110,6 +111,11 @@ class Run:
     def to_xarray(self) -> xarray.Dataset:
         """Give the trace as a dataset over ``t_s``, with units, and outcome and seed as attributes.
 
+        Raises
+        ------
+        ScenarioError
+            The run has no trace.
+
         Examples
         --------
         >>> import breakaway as bk
@@ -120,6 +126,8 @@ class Run:
         """
         import xarray
 
+        if not self.trace:
+            raise ScenarioError("trace.every_samples: is 0, so there is no trace; give 1 or more")
         data = {
             name: ("t_s", values, {"units": TRACE_UNITS[name]})
             for name, values in self.trace.items()

@@ -40,19 +40,6 @@ def run_summary(run: Run) -> dict[str, Any]:
     }
 
 
-def has_trace(run: Run) -> bool:
-    """Tell whether a run recorded anything.
-
-    Examples
-    --------
-    >>> import breakaway as bk
-    >>> has_trace(bk.simulate(bk.load_scenario("paper_as_computed")))
-    True
-
-    """
-    return any(len(column) for column in run.trace.values())
-
-
 def write_run(run: Run, folder: str | Path) -> list[Path]:
     """Write ``scenario.toml``, ``metrics.json``, the trace and its figure to a folder.
 
@@ -112,14 +99,14 @@ def written_run(folder: Path) -> Iterator[Callable[[Run], list[Path]]]:
 
 
 def _names(run: Run) -> list[str]:
-    return ["scenario.toml", "metrics.json", *(TRACE_FILES if has_trace(run) else ())]
+    return ["scenario.toml", "metrics.json", *(TRACE_FILES if run.trace else ())]
 
 
 def _write_files(run: Run, folder: Path) -> None:
     summary = json.dumps(run_summary(run), indent=2, allow_nan=False) + "\n"
     (folder / "metrics.json").write_text(summary, encoding="utf-8", newline="\n")
     (folder / "scenario.toml").write_text(_rerun_toml(run), encoding="utf-8", newline="\n")
-    if not has_trace(run):
+    if not run.trace:
         return
     _write_trace(run, folder)
     from breakaway.plots.run import plot_run

@@ -106,7 +106,7 @@ def test_an_unwritable_place_exits_with_3(
 def test_an_unwritable_folder_is_found_before_the_simulation(
     call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    home = importlib.import_module("breakaway.simulate")
+    home = importlib.import_module("breakaway.simulation")
     monkeypatch.setattr(home, "simulate", lambda *_: pytest.fail("simulated"))
     (tmp_path / "file").write_text("")
     assert call("run", "paper_as_computed", "--out", tmp_path / "file").exit_code == 3
@@ -138,7 +138,7 @@ def test_a_reader_that_stops_is_no_crash() -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_leaves_nothing_behind(tmp_path: Path) -> None:
     scenario, out = tmp_path / "long.toml", tmp_path / "out"
-    changes = {"timing.duration_s": 50_000.0, "trace.every_samples": 1000}
+    changes = {"timing.duration_s": 20_000.0, "trace.every_samples": 1000}
     bk.save_scenario(BASE.with_(changes), scenario)
     process = subprocess.Popen(
         [*COMMAND, "run", str(scenario), "--out", str(out)],

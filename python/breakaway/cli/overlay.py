@@ -11,7 +11,7 @@ from breakaway.cli.show import Sheet
 from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
 from breakaway.identify.joint_file import JointFile
-from breakaway.resolve import resolve
+from breakaway.resolution import resolve
 from breakaway.scenario import FmVibration, PolePlacement, Scenario, TwoStep
 
 WEIGHT = "left out, so the weight of the identified mass"

@@ -79,7 +79,7 @@ def run(
 
 
 def _simulate(scenario: Scenario, out: Path | None) -> tuple[Run, list[Path]]:
-    from breakaway.simulate import simulate
+    from breakaway.simulation import simulate
 
     what = f"simulating {show('duration_s', scenario.timing.duration_s)} ..."
     if out is None:
@@ -114,10 +114,9 @@ def _show(finished: Run) -> None:
 
 
 def _notes(finished: Run, out: Path | None) -> list[str]:
-    from breakaway.run_output import has_trace
 
     notes = []
-    if out is not None and not has_trace(finished):
+    if out is not None and not finished.trace:
         notes.append("no trace and no figure: trace.every_samples is 0")
     if out is None:
         notes.append("--out DIR keeps trace, figure and the scenario that reruns this")

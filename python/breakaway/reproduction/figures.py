@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from breakaway.imposed import impose_motion
 from breakaway.plots.style import COLORS, house_figure, house_style
 from breakaway.reproduction.runs import DisturbanceRange, Runs
-from breakaway.resolve import resolve
+from breakaway.resolution import resolve
 from breakaway.run import Run
 from breakaway.scenario.files import load_scenario
 from breakaway.scenario.joint import Lugre

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from breakaway.resolve import resolve
+from breakaway.resolution import resolve
 from breakaway.run import Outcome, Run
 from breakaway.scenario.controller import Gains, Pid, PolePlacement
 from breakaway.scenario.files import load_scenario
 from breakaway.scenario.reference import StepReference
 from breakaway.scenario.scenario import Scenario
-from breakaway.simulate import simulate
+from breakaway.simulation import simulate
 
 Progress = Callable[[str], None]
 

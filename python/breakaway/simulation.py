@@ -8,7 +8,7 @@ import numpy as np
 
 from breakaway import _core
 from breakaway.errors import ScenarioError
-from breakaway.resolve import core_job, resolve
+from breakaway.resolution import core_job, resolve
 from breakaway.run import Outcome, Run, RunMetrics
 from breakaway.scenario.scenario import Scenario
 
@@ -47,7 +47,7 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
         raise ScenarioError(f"run_index: {run_index!r} is not a whole number within 0 to 2^64 - 1")
     resolved = resolve(scenario)
     outcome, figures, columns = _core.run_one(core_job(resolved, run_index))
-    trace = {name: np.frombuffer(values) for name, values in columns.items()}
+    trace = {name: np.frombuffer(values) for name, values in columns.items() if values}
     return Run(
         outcome=Outcome(outcome),
         metrics=RunMetrics(**figures),
