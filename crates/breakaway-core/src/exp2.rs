@@ -7,7 +7,7 @@
 //! The polynomials are Chebyshev fits of degree 10 (`f64`, relative error 2.2e-16) and 6 (`f32`,
 //! 2e-9), summed by Estrin's scheme for the same reason.
 
-use crate::real::fused::{fma_f32, fma_f64};
+use crate::fused::{fma_f32, fma_f64};
 
 #[inline(always)]
 pub(crate) fn exp2_f64(y: f64) -> (f64, f64) {

@@ -29,6 +29,7 @@
 extern crate std;
 
 mod exp2;
+mod fused;
 mod parameters;
 
 pub mod actuator;

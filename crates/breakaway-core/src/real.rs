@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::exp2;
+use crate::{exp2, fused};
 
 /// A number that the equations can be computed with.
 ///
@@ -163,22 +163,6 @@ macro_rules! impl_real {
             }
         }
     };
-}
-
-/// The fused multiply-add of the platform, or the same in software.
-pub(crate) mod fused {
-    #[cfg(feature = "std")]
-    #[inline(always)]
-    pub(crate) fn fma_f64(a: f64, b: f64, c: f64) -> f64 {
-        f64::mul_add(a, b, c)
-    }
-    #[cfg(feature = "std")]
-    #[inline(always)]
-    pub(crate) fn fma_f32(a: f32, b: f32, c: f32) -> f32 {
-        f32::mul_add(a, b, c)
-    }
-    #[cfg(not(feature = "std"))]
-    pub(crate) use libm::{fma as fma_f64, fmaf as fma_f32};
 }
 
 impl_real!(f64, exp2::exp2_f64, fused::fma_f64);

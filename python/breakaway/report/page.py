@@ -21,7 +21,7 @@ def render(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the
         lstrip_blocks=True,
     )
     environment.filters["inline_svg"] = inline_svg
-    environment.filters["number"] = readable_number
+    environment.filters["decimal"] = decimal_number
     return environment.get_template(template).render(**context)
 
 
@@ -41,10 +41,6 @@ def inline_svg(path: Path) -> Markup:
     return Markup(f"{opening}>{rest}")
 
 
-def readable_number(value: float | str | None) -> str:
-    """A number with six digits, or the text as it is; a dash for what does not exist."""
-    if value is None:
-        return "–"
-    if isinstance(value, str):
-        return value
-    return f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:.6g}"
+def decimal_number(value: float, places: int) -> str:
+    """A number with a given number of decimal places."""
+    return f"{value:,.{places}f}"

@@ -51,28 +51,28 @@ def misprints() -> list[Finding]:
         misprint(
             "equation_2",
             "Equation (2) lacks the bristle stiffness",
-            "dz/dt = v - |v| z / g(v)",
-            "dz/dt = v - k_e |v| z / g(v)",
+            "dz/dt = v − |v| z / g(v)",
+            "dz/dt = v − k_e |v| z / g(v)",
             "As printed the units do not match; Canudas de Wit et al. (1995) have the factor.",
         ),
         misprint(
             "equation_11",
             "The characteristic polynomial lacks an s",
-            "(s + a)(s^2 + 2 eps w + w^2)",
-            "(s + a)(s^2 + 2 eps w s + w^2)",
+            "(s + a)(s² + 2 ε ω + ω²)",
+            "(s + a)(s² + 2 ε ω s + ω²)",
             "Without the s its middle term is a constant, and the gains do not follow.",
         ),
         misprint(
             "static_gains",
             "Two terms of the static gains are misprinted",
-            "kp_s = w^2 + 2 a eps w + w^2 - k_e, kd_s = (2 eps w + a) m - eps",
-            "kp_s = (w^2 + 2 a eps w) m - k_e, kd_s = (2 eps w + a) m - c",
+            "kp_s = ω² + 2 a ε ω + ω² − k_e, kd_s = (2 ε ω + a) m − ε",
+            "kp_s = (ω² + 2 a ε ω) m − k_e, kd_s = (2 ε ω + a) m − c",
             "Only these give Table II.",
         ),
         misprint(
             "units",
-            "Table I gives the Stribeck velocity in m/s^2, and Table II carries its caption",
-            "0.09 m/s^2",
+            "Table I gives the Stribeck velocity in m/s², and Table II carries its caption",
+            "0.09 m/s²",
             "0.09 m/s",
             "v_s divides a velocity in equation (3).",
         ),
@@ -92,7 +92,7 @@ def table_1_and_table_2(rows: list[Row]) -> Finding:
         "all 18 follow from k_e = 3.6e7 N/m and c = 9000 N s/m",
         "",
         False,
-        "c = 9000 is 1.5 sqrt(k_e). Hence two sets of presets: as printed, and as computed.",
+        "c = 9000 is 1.5 √k_e. Hence two sets of presets: as printed, and as computed.",
     )
 
 
@@ -131,7 +131,7 @@ def _routh_hurwitz(runs: Runs) -> list[Finding]:
                 f"undisturbed, the run {_ending(run)}",
                 _ending(run) + (", kp kd / m > ki" if verdict.stable else ", kp kd / m < ki"),
                 verdict.stable,
-                "Routh-Hurwitz for s^3 + kd/m s^2 + kp/m s + ki/m: stable if kp kd / m > ki. "
+                "Routh-Hurwitz for s³ + kd/m s² + kp/m s + ki/m: stable if kp kd / m > ki. "
                 "Gating the force by a duty cycle scales both sides and does not help.",
             )
         )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from decimal import Decimal
 
 
 @dataclass(frozen=True)
@@ -24,6 +23,8 @@ class Row:
     """Whether they agree."""
     reason: str
     """The measure of agreement, or why they differ."""
+    decimals: int = 0
+    """Decimal places of the printed number."""
 
     def to_dict(self) -> dict[str, object]:
         """Plain values, without the key."""
@@ -34,9 +35,9 @@ class Row:
 
 def printed_row(key: str, what: str, printed: str, ours: float, unit: str, reason: str) -> Row:
     """Compare with a printed number: it agrees within one unit of its last printed digit."""
-    number = Decimal(printed)
-    exponent = number.as_tuple().exponent
-    last_digit = float(Decimal(1).scaleb(exponent if isinstance(exponent, int) else 0))
-    agrees = abs(ours - float(number)) <= last_digit
+    decimals = len(printed.partition(".")[2])
+    last_digit = 10.0**-decimals
+    agrees = abs(ours - float(printed)) <= last_digit
     measure = f"within {last_digit:g}, the last printed digit"
-    return Row(key, what, float(number), ours, unit, agrees, measure if agrees else reason)
+    reason = measure if agrees else reason
+    return Row(key, what, float(printed), ours, unit, agrees, reason, decimals)

@@ -29,7 +29,7 @@ TABLE_2 = {
 """The printed gains, in thousands (the paper's second table, captioned as its first)."""
 
 _NAMES = {"kp": "proportional", "kd": "derivative", "ki": "integral"}
-_UNITS = {"kp": "1e3 N/m", "kd": "1e3 N s/m", "ki": "1e3 N/(m s)"}
+_UNITS = {"kp": "kN/m", "kd": "kN s/m", "ki": "kN/(m s)"}
 
 
 def designed(scenario: Scenario, control: str) -> GainSet:
@@ -43,7 +43,7 @@ def table_1() -> list[Row]:
     joint = load_scenario("paper_as_computed").joint
     if not isinstance(joint, Lugre):
         raise TypeError("the preset paper_as_computed is a LuGre joint")
-    implied = "all 18 gains of Table II follow from this value and none from the printed one"
+    implied = "all 18 gains of Table II follow from our value; with the printed one 8 do not"
     rows = (
         ("f_s0", "initial stiction force F_s0", "450", joint.stiction_n, "N"),
         ("f_c0", "initial Coulomb force F_c0", "360", joint.coulomb_n, "N"),

@@ -21,7 +21,7 @@ class Timing(Model):
     integrator: Literal["linearly_implicit_midpoint", "rk4"] = "linearly_implicit_midpoint"
     """How the plant is stepped; rk4 is the oracle and needs steps of about 1e-7 s."""
     steps_per_period: Annotated[int, Field(ge=1, le=100_000)] = 1
-    """Integration steps in a control period."""
+    """Integration steps in a control period; keep each below 0.3 sqrt(mass / stiffness)."""
 
 
 class Trace(Model):
