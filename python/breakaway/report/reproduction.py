@@ -32,7 +32,7 @@ class Reproduction:
     header: Sequence[str]
     """Column names of `table`."""
     table: Sequence[Sequence[str]]
-    """The summary: question, paper, ours, verdict."""
+    """The summary: finding, paper, ours, verdict."""
 
 
 def reproduce(out: Path, progress: Callable[[str], None] = lambda _: None) -> Reproduction:
@@ -70,7 +70,7 @@ def reproduce(out: Path, progress: Callable[[str], None] = lambda _: None) -> Re
     table = [
         [g.what, str(g.printed), str(g.ours), "agrees" if g.agrees else "differs"] for g in glance
     ]
-    return Reproduction(out / "report.html", ("question", "paper", "ours", ""), table)
+    return Reproduction(out / "report.html", ("finding", "paper", "ours", ""), table)
 
 
 def _at_a_glance(
