@@ -33,7 +33,7 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
     ScenarioError
         The controller can not be designed for this joint.
     KeyboardInterrupt
-        Ctrl-C; the loop asks about every 16,000 control samples.
+        Ctrl-C; the loop asks about every 16,000 steps.
 
     Examples
     --------

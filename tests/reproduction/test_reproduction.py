@@ -69,7 +69,7 @@ def test_findings_carry_the_known_figures(values):
     cycle = findings["limit_cycle"]["ours"]
     assert abs(float(re.search(r"about (\d+) Hz", cycle)[1]) - 285) < 10
     assert re.search(r"IAE 6\.9\de-07 m s, peak 44[67] N", cycle)
-    known = re.search(r"oracle (\S+) m s", findings["iae_without_vibration"]["ours"])[1]
+    known = re.search(r"at 0.1 µs (\S+) m s", findings["iae_without_vibration"]["ours"])[1]
     assert float(known) == pytest.approx(3.0361549e-6, rel=1e-7)
     for finding in findings.values():
         assert finding["title"] and finding["printed"] and finding["ours"]
@@ -179,7 +179,7 @@ def test_an_interrupted_reproduction_leaves_nothing_behind(tmp_path, monkeypatch
     monkeypatch.setattr("breakaway.report.reproduction.simulate_all", interrupted)
     with pytest.raises(KeyboardInterrupt):
         reproduce(tmp_path / "out")
-    assert list((tmp_path / "out").iterdir()) == []
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_range_is_not_stable_beyond_its_first_failure():
@@ -187,7 +187,7 @@ def test_a_range_is_not_stable_beyond_its_first_failure():
 
     def survey(stable):
         return simulations.DisturbanceRange(
-            var, np.zeros((3, 5)), np.array(stable), np.array([5, 5, 5]), 5
+            var, *(np.zeros((3, 5)),) * 3, np.array(stable), np.array([5, 5, 5]), 5
         )
 
     assert survey([5, 5, 5]).largest_stable_var == 0.2

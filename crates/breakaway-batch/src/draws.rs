@@ -75,15 +75,21 @@ impl HeldDraws {
         Self { seed, run, samples_per_draw, draws: 0, next_redraw: 0, held: 0.0 }
     }
 
-    /// The draw that holds at sample number `sample`, and the sample at which the next one does.
+    /// Draws for sample number `sample` where one is due; gives the sample of the next draw.
     /// Samples must be asked for in order.
-    pub fn at(&mut self, sample: u64) -> (f64, u64) {
+    pub fn redraw_after(&mut self, sample: u64) -> u64 {
         if sample >= self.next_redraw {
             self.held = uniform(self.seed, self.run, Stream::Disturbance, self.draws);
             self.draws += 1;
             self.next_redraw = (f64::from(self.draws) * self.samples_per_draw - 1e-6).ceil() as u64;
         }
-        (self.held, self.next_redraw)
+        self.next_redraw
+    }
+
+    /// The draw that holds; zero before the first.
+    #[must_use]
+    pub fn held(&self) -> f64 {
+        self.held
     }
 }
 
@@ -127,7 +133,12 @@ mod tests {
     #[test]
     fn a_draw_is_held_for_its_time() {
         let mut draws = HeldDraws::new(5, 0, 1e-4, 1e-5);
-        let held: Vec<f64> = (0..100_000).map(|n| draws.at(n).0).collect();
+        let held: Vec<f64> = (0..100_000)
+            .map(|n| {
+                draws.redraw_after(n);
+                draws.held()
+            })
+            .collect();
         for (j, block) in held.chunks(10).enumerate() {
             let expected = uniform(5, 0, Stream::Disturbance, j as u32);
             assert!(block.iter().all(|&w| w == expected), "hold {j}");

@@ -55,7 +55,7 @@ pub struct Run {
 }
 
 /// How often a run asks whether it should go on.
-const SAMPLES_PER_CHECK: u64 = 1 << 14;
+const STEPS_PER_CHECK: u64 = 1 << 14;
 
 /// Runs a job to its end, or until it diverges.
 ///
@@ -130,11 +130,12 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
         0 => (u64::MAX, u64::MAX),
         _ => (0, job.samples - 1),
     };
+    let per_check = (STEPS_PER_CHECK / u64::from(job.extraction.timing.steps_per_period)).max(1);
     let mut n = 0;
     while n < job.samples && progress.metrics.bounded == 1.0 {
-        let (held, redraw) = if disturbance.var == 0.0 { (0.0, u64::MAX) } else { draws.at(n) };
-        let draws = Draws { disturbance: held };
-        let check = (n / SAMPLES_PER_CHECK + 1) * SAMPLES_PER_CHECK;
+        let redraw = if disturbance.var == 0.0 { u64::MAX } else { draws.redraw_after(n) };
+        let draws = Draws { disturbance: draws.held() };
+        let check = (n / per_check + 1) * per_check;
         if n == next_row || n == last_row {
             let sample = progress.take_one(job, draws);
             n += 1;
@@ -155,7 +156,18 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
         }
     }
     let Progress { state, metrics } = progress;
+    if metrics.bounded == 0.0 && job.trace_every != 0 {
+        record_divergence(&mut trace, job, state, draws.held());
+    }
     Ok(Run { outcome: metrics.outcome(&job.limits), metrics, state, trace })
+}
+
+/// Keeps the sample that left the bounds, unless it is the last row already.
+fn record_divergence(trace: &mut Trace, job: &Job, mut state: ExtractionState<f64>, held: f64) {
+    let sample = job.extraction.step(&mut state, Draws { disturbance: held });
+    if trace[0].last() != Some(&sample.time_s) {
+        record(trace, &sample);
+    }
 }
 
 /// A run under way.
@@ -165,16 +177,19 @@ struct Progress {
 }
 
 impl Progress {
-    /// Takes `count` samples with one draw; stops early where the run leaves its bounds. What moves
+    /// Takes `count` samples with one draw; stops where the run leaves its bounds, in the state
+    /// before the sample that does. What moves
     /// at every sample is kept in local variables, and so in registers.
     #[inline(always)]
     fn advance(&mut self, job: &Job, draws: Draws<f64>, count: u64) {
         let (extraction, limits) = (job.extraction, job.limits);
         let (mut state, mut metrics) = (self.state, self.metrics);
         for _ in 0..count {
+            let before = state;
             let sample = extraction.step(&mut state, draws);
             metrics.update(&limits, &sample);
             if metrics.bounded == 0.0 {
+                state = before;
                 break;
             }
         }
@@ -184,8 +199,12 @@ impl Progress {
     /// Takes one sample and gives it.
     #[inline(always)]
     fn take_one(&mut self, job: &Job, draws: Draws<f64>) -> Sample<f64> {
+        let before = self.state;
         let sample = job.extraction.step(&mut self.state, draws);
         self.metrics.update(&job.limits, &sample);
+        if self.metrics.bounded == 0.0 {
+            self.state = before;
+        }
         sample
     }
 }

@@ -88,7 +88,7 @@ parameters! {
         pub largest_jump_m,
         /// When the joint broke loose, s.
         pub breakaway_s,
-        /// When the part came free, s.
+        /// When the part came free to stay, s.
         pub release_s,
         /// v when the part came free, m/s.
         pub release_velocity_m_per_s,
@@ -130,16 +130,24 @@ impl<R: Real> Metrics<R> {
 
     /// Counts a sample, unless the run has left its bounds.
     ///
-    /// Out of bounds everything that is counted becomes zero, here and once: cheaper than keeping
-    /// every sum from a change, and a sample that is not a number is not counted either.
+    /// The sample that leaves them still counts for the largest error and force, so that these tell
+    /// why the run diverged; for nothing else. Out of bounds everything that is summed becomes zero,
+    /// here and once: cheaper than keeping every sum from a change.
     #[inline(always)]
     pub fn update(&mut self, limits: &Limits<R>, sample: &Sample<R>) {
         let error = (sample.reference_m - sample.position_m).abs();
+        let force = sample.applied_force_n.abs();
         let within = error.le(limits.diverged_error_m)
-            & sample.applied_force_n.abs().le(limits.diverged_force_n)
+            & force.le(limits.diverged_force_n)
             & sample.next_position_m.abs().lt(R::constant(f64::INFINITY));
-        let bounded = self.bounded.is_set() & within;
+        let was_bounded = self.bounded.is_set();
+        let bounded = was_bounded & within;
         self.bounded = R::flag(bounded);
+        // The order matters: what is not a number is passed over.
+        let seen = |value: R, largest: R| R::select(was_bounded, value.max(largest), largest);
+        self.largest_error_m = seen(error, self.largest_error_m);
+        self.peak_force_n = seen(force, self.peak_force_n);
+
         let counted = |value: R| R::select(bounded, value, R::zero());
         let period_s = counted(sample.period_s);
         let force = counted(sample.applied_force_n);
@@ -162,13 +170,11 @@ impl<R: Real> Metrics<R> {
         self.iae_m_s = self.iae_m_s + area;
         self.ise_m2_s = error.mul_add(area, self.ise_m2_s);
         self.itae_m_s2 = time_s.mul_add(area, self.itae_m_s2);
-        self.largest_error_m = self.largest_error_m.max(error);
     }
 
     #[inline(always)]
     fn count_force(&mut self, period_s: R, force: R, travel: R, joint_force: R) {
         let impulse = force * period_s;
-        self.peak_force_n = self.peak_force_n.max(force.abs());
         self.impulse_n_s = self.impulse_n_s + impulse;
         self.force_square_n2_s = force.mul_add(impulse, self.force_square_n2_s);
         self.work_j = force.mul_add(travel, self.work_j);
@@ -205,14 +211,15 @@ impl<R: Real> Metrics<R> {
         let next_s = R::select(bounded, sample.time_s + sample.period_s, not_yet);
         let loose = limits.breakaway_travel_m.lt(sample.next_position_m);
         self.breakaway_s = self.breakaway_s.min(R::select(loose, next_s, not_yet));
+        // A part that is pulled back into its guide is not free: only the last release counts.
         let free = limits.release_position_m.le(sample.next_position_m);
-        let released_s = R::select(free, next_s, not_yet);
+        let since_s = R::select(free, self.release_s.min(next_s), not_yet);
         self.release_velocity_m_per_s = R::select(
-            released_s.lt(self.release_s),
+            next_s.lt(self.release_s) & free,
             sample.next_velocity_m_per_s,
             self.release_velocity_m_per_s,
         );
-        self.release_s = self.release_s.min(released_s);
+        self.release_s = R::select(bounded, since_s, self.release_s);
     }
 }
 

@@ -55,6 +55,8 @@ def identify(
 
     settings: dict[str, Any] = {"lowpass_hz": lowpass_hz, "decimation": decimation}
     given = {name: value for name, value in settings.items() if value is not None}
+    if out is not None:
+        _check_target(log, out)
     with busy("identifying ..."):
         measured = read_log(log, format=format.value)
         fit = identify_inertia_friction(measured, **given)
@@ -66,6 +68,20 @@ def identify(
         say_json({"log": str(log), **asdict(fit), "file": str(out) if out else None})
     elif out is not None:
         say(f"wrote {out}")
+
+
+def _check_target(log: Path, out: Path) -> None:
+    """Refuse to write over the log, or over anything but another joint file."""
+    from breakaway.errors import OutputError, ScenarioError
+    from breakaway.identify import JointFile
+    from breakaway.output import refuse_to_overwrite
+
+    refuse_to_overwrite(log, out)
+    if out.is_file():
+        try:
+            JointFile.load(out)
+        except ScenarioError:
+            raise OutputError(f"{out}: is there and is no joint file; give another name") from None
 
 
 def _show(fit: InertiaFrictionFit, log: Path) -> None:

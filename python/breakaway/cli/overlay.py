@@ -12,7 +12,7 @@ from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
 from breakaway.identify.joint_file import JointFile
 from breakaway.resolution import resolve
-from breakaway.scenario import FmVibration, PolePlacement, Scenario, TwoStep
+from breakaway.scenario import PolePlacement, Scenario, gain_sets
 
 WEIGHT = "left out, so the weight of the identified mass"
 
@@ -63,7 +63,7 @@ class Overlay:
         """Say what becomes of the controller's gains."""
         kinds = {
             "designed" if isinstance(gains, PolePlacement) else "given"
-            for gains in _gains_of(self.scenario)
+            for gains in gain_sets(self.scenario.controller).values()
         }
         texts = {
             "designed": "designed anew for the identified joint",
@@ -159,12 +159,3 @@ def _value(scenario: Scenario, field: str) -> float | None:
     for key in field.split("."):
         found = getattr(found, key, None)
     return found if isinstance(found, float) else None
-
-
-def _gains_of(scenario: Scenario) -> list[object]:
-    controller = scenario.controller
-    if isinstance(controller, TwoStep):
-        return [controller.pid.gains, controller.vibration_gains]
-    if isinstance(controller, FmVibration):
-        return [controller.pid.gains]
-    return [controller.gains]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from breakaway.design.pole_placement import PidGains, check_positive
+from breakaway.errors import ScenarioError
 from breakaway.scenario.joint import Lugre, SeizedJoint
 
 
@@ -76,6 +77,11 @@ def stability(gains: PidGains, joint: SeizedJoint, mass_kg: float) -> Stability:
 
 def _routh_hurwitz(damping: float, stiffness: float, ki: float, mass_kg: float) -> LoopStability:
     a2, a1, a0 = damping / mass_kg, stiffness / mass_kg, ki / mass_kg
+    if not np.all(np.isfinite([a2, a1, a0])):
+        raise ScenarioError(
+            f"gains: kp = {stiffness:g}, kd = {damping:g}, ki = {ki:g} over mass_kg = {mass_kg:g} "
+            "are beyond all numbers; give gains nearer to those of a real loop"
+        )
     poles = tuple(complex(p) for p in np.roots([1.0, a2, a1, a0]))
     negative = [
         f"{name} = {value:.4g}"

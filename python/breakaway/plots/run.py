@@ -73,6 +73,7 @@ def plot_run(run: Run) -> Figure:
             x=0.01,
             ha="left",
             fontsize=11,
+            parse_math=False,
         )
     return figure
 

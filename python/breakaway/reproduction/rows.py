@@ -19,8 +19,8 @@ class Row:
     """Ours, in the same unit; None where there is none."""
     unit: str
     """The unit of both."""
-    agrees: bool
-    """Whether they agree."""
+    agrees: bool | None
+    """Whether they agree; None where the paper prints nothing to agree with."""
     reason: str
     """The measure of agreement, or why they differ."""
     decimals: int = 0

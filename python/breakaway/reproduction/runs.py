@@ -37,6 +37,10 @@ class DisturbanceRange:
     """Levels of var."""
     iae_m_s: NDArray[np.float64]
     """IAE of each run, levels x runs; NaN for a run that diverged."""
+    peak_force_n: NDArray[np.float64]
+    """Peak force of each run, levels x runs."""
+    largest_jump_m: NDArray[np.float64]
+    """Largest jump of each run, levels x runs."""
     stable: NDArray[np.int64]
     """Number of runs that did not diverge, by level."""
     released: NDArray[np.int64]
@@ -106,6 +110,7 @@ def simulate_all(progress: Progress) -> Runs:
 def disturbance_range(scenario: Scenario) -> DisturbanceRange:
     """Simulate every level of var with run numbers 0 to `SEEDS` - 1."""
     iae = np.full((len(VAR_LEVELS), SEEDS), np.nan)
+    peak, jump = np.full_like(iae, np.nan), np.full_like(iae, np.nan)
     released = np.zeros(len(VAR_LEVELS), dtype=np.int64)
     for i, var in enumerate(VAR_LEVELS):
         level = scenario.with_({"disturbance.var": var, "trace.every_samples": 0})
@@ -114,8 +119,10 @@ def disturbance_range(scenario: Scenario) -> DisturbanceRange:
             released[i] += run.outcome is Outcome.RELEASED
             if run.outcome is not Outcome.DIVERGED:
                 iae[i, k] = run.metrics.iae_m_s
+                peak[i, k] = run.metrics.peak_force_n
+                jump[i, k] = run.metrics.largest_jump_m
     stable = np.count_nonzero(np.isfinite(iae), axis=1)
-    return DisturbanceRange(np.array(VAR_LEVELS), iae, stable, released, SEEDS)
+    return DisturbanceRange(np.array(VAR_LEVELS), iae, peak, jump, stable, released, SEEDS)
 
 
 def with_derivative_gain(scenario: Scenario, kd_n_s_per_m: float) -> Scenario:

@@ -11,6 +11,7 @@ from breakaway.scenario.controller import (
     PidSettings,
     PolePlacement,
     TwoStep,
+    gain_sets,
 )
 from breakaway.scenario.disturbance import UniformDisturbance
 from breakaway.scenario.files import (
@@ -54,6 +55,7 @@ __all__ = [
     "TwoRegion",
     "TwoStep",
     "UniformDisturbance",
+    "gain_sets",
     "load_scenario",
     "parse_scenario",
     "preset_names",

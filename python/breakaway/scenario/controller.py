@@ -126,3 +126,13 @@ class TwoStep(Model):
 
 
 Controller = Annotated[Pid | FmVibration | TwoStep, Field(discriminator="kind")]
+
+
+def gain_sets(controller: Pid | FmVibration | TwoStep) -> dict[str, Gains | PolePlacement]:
+    """Every set of gains of a controller, by its path within it."""
+    if isinstance(controller, Pid):
+        return {"gains": controller.gains}
+    sets: dict[str, Gains | PolePlacement] = {"pid.gains": controller.pid.gains}
+    if isinstance(controller, TwoStep):
+        sets["vibration_gains"] = controller.vibration_gains
+    return sets

@@ -71,10 +71,14 @@ def parse_toml(model: type[AnyModel], text: str, source: str) -> AnyModel:
         It is not TOML, or a value is not valid; the message names every such field.
 
     """
+    if text.startswith("\ufeff"):
+        raise ScenarioError(f"{source}: starts with a byte order mark; save it as plain UTF-8")
     try:
-        return model.parse(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
+        values = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # also numbers too long, tables too deep
         raise ScenarioError(f"{source}: is not TOML: {error}") from None
+    try:
+        return model.parse(values)
     except ScenarioError as error:
         raise ScenarioError(
             f"{source}:\n{error}" if "\n" in str(error) else f"{source}: {error}"

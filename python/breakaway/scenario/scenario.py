@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import ceil, sqrt
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Field, model_validator
 
 from breakaway.errors import ScenarioError
 from breakaway.scenario.actuator import Actuator, IdealActuator
-from breakaway.scenario.controller import Controller, FmVibration, TwoStep
+from breakaway.scenario.controller import Controller, FmVibration, Pid, TwoStep
 from breakaway.scenario.disturbance import UniformDisturbance
 from breakaway.scenario.joint import Joint, Part
 from breakaway.scenario.model import Model
-from breakaway.scenario.reference import Reference
+from breakaway.scenario.reference import Reference, StepReference
 from breakaway.scenario.run import Limits, Timing, Trace
 
 SAMPLES_MAX = 4_000_000_000
 """Most integration steps of one run."""
-ROWS_MAX = 50_000_000
+ROWS_MAX = 10_000_000
 """Most rows of one trace."""
 
 
@@ -95,6 +96,58 @@ class Scenario(Model):
             raise ValueError(
                 f"trace.every_samples: {every!r} makes {ratio / every:.3g} rows, more than "
                 f"{ROWS_MAX:.0e}; give {int(ratio // ROWS_MAX) + 1} or more"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _steps_are_short(self) -> Self:
+        timing, k_e, m = self.timing, self.joint.stiffness_n_per_m, self.part.mass_kg
+        step_s = timing.control_period_s / timing.steps_per_period
+        longest_s, rule = 0.3 * sqrt(m / k_e), "0.3 sqrt(part.mass_kg / joint.stiffness_n_per_m)"
+        if timing.integrator == "rk4":
+            longest_s, rule = longest_s / 15, f"{rule} / 15, for rk4 is explicit,"
+            damping = self.joint.damping_n_s_per_m
+            if damping * longest_s > m:
+                longest_s, rule = m / damping, "part.mass_kg / joint.damping_n_s_per_m"
+        if step_s > longest_s:
+            needed = timing.control_period_s / longest_s if longest_s > 0 else float("inf")
+            remedy = f"give {ceil(needed)} or more" if needed <= 1e5 else "sample faster"
+            raise ValueError(
+                f"timing.steps_per_period: {timing.steps_per_period!r} makes steps of {step_s:.4g} "
+                f"s of timing.control_period_s = {timing.control_period_s!r}, not <= {rule} = "
+                f"{longest_s:.4g} s, so the bristle is not resolved; {remedy}"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _is_free_near_the_end(self) -> Self:
+        tolerance_m, length_m = self.limits.release_tolerance_m, self.joint.engagement_length_m
+        if tolerance_m > 0.01 * length_m:
+            raise ValueError(
+                f"limits.release_tolerance_m: {tolerance_m!r} is not <= a hundredth of "
+                f"joint.engagement_length_m = {length_m!r}; give a number <= {0.01 * length_m:.4g}"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _starts_within_bounds(self) -> Self:
+        bound_m = self.limits.diverged_error_m or self.joint.engagement_length_m / 2
+        if isinstance(self.reference, StepReference) and self.reference.distance_m > bound_m:
+            raise ValueError(
+                f"reference.distance_m: a step of {self.reference.distance_m!r} is an error above "
+                f"limits.diverged_error_m = {bound_m!r} at once; give a larger bound, or a motion"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _tracks_no_faster_than_it_samples(self) -> Self:
+        controller, period = self.controller, self.timing.control_period_s
+        pid = controller if isinstance(controller, Pid) else controller.pid
+        if pid.anti_windup == "back_calculation" and pid.tracking_time_s < period * (1 - 1e-9):
+            where = "controller" if pid is controller else "controller.pid"
+            raise ValueError(
+                f"{where}.tracking_time_s: {pid.tracking_time_s!r} is not >= "
+                f"timing.control_period_s = {period!r}; the back calculation would overshoot"
             )
         return self
 

@@ -19,11 +19,12 @@ pub enum PulseShape {
 ///
 /// ```text
 /// f = f_min + (f_max − f_min) min(|e| / e_full, 1)       pulse frequency
-/// u = phase / (f t_p)                                     progress of the pulse of width t_p
+/// u = time since the pulse's start / t_p                  progress of the pulse of width t_p
 /// F = A (b + (1 − b) shape(u))  for u < 1,  A b after     b the share held between pulses
 /// ```
 ///
-/// The paper gives 80 to 160 Hz; `e_full`, the width and the shape are not printed. Not checked
+/// A pulse starts when the phase, the integral of f, completes a cycle. Its width is that of a clock,
+/// whatever f does meanwhile. The paper gives 80 to 160 Hz; `e_full`, the width and the shape are not printed. Not checked
 /// here: f_max below half the sampling rate, pulses that do not overlap (t_p f_max ≤ 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
@@ -42,8 +43,14 @@ pub struct FmVibration<R> {
     pub shape: PulseShape,
 }
 
-/// What moves: the phase in cycles, 0 to 1.
-pub type FmVibrationState<R> = R;
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FmVibrationState<R> {
+    /// Phase in cycles, 0 to 1.
+    pub phase_cycles: R,
+    /// Time in s since the pulse's start.
+    pub since_pulse_s: R,
+}
 
 impl<R: Real> FmVibration<R> {
     /// Applies `f` to every number.
@@ -65,19 +72,24 @@ impl<R: Real> FmVibration<R> {
         self.frequency_min_hz + (self.frequency_max_hz - self.frequency_min_hz) * share
     }
 
-    /// The force in N at a sample for an amplitude in N; moves the phase by one period.
+    /// The force in N at a sample for an amplitude in N; moves phase and clock by one period.
     #[inline(always)]
     pub fn step(
         &self,
-        phase: &mut FmVibrationState<R>,
+        state: &mut FmVibrationState<R>,
         amplitude_n: R,
         measured: &Measurement<R>,
     ) -> R {
-        let frequency = self.frequency(measured.error_m());
-        let progress = *phase / (frequency * self.pulse_width_s);
-        let pulse = R::select(progress.lt(R::one()), self.shape(progress), R::zero());
-        let next = *phase + frequency * measured.period_s;
-        *phase = next - R::flag(R::one().le(next));
+        // Half a period less, so that rounding does not decide whether a pulse has a sample more.
+        let last_s = self.pulse_width_s - R::constant(0.5) * measured.period_s;
+        let progress = state.since_pulse_s / self.pulse_width_s;
+        let on = state.since_pulse_s.lt(last_s);
+        let pulse = R::select(on, self.shape(progress), R::zero());
+        let next =
+            self.frequency(measured.error_m()).mul_add(measured.period_s, state.phase_cycles);
+        let starts = R::one().le(next);
+        state.phase_cycles = next - R::flag(starts);
+        state.since_pulse_s = R::select(starts, R::zero(), state.since_pulse_s + measured.period_s);
         let base = self.base_fraction;
         amplitude_n * (base + (R::one() - base) * pulse)
     }
@@ -144,6 +156,27 @@ mod tests {
         }
     }
 
+    fn start() -> FmVibrationState<f64> {
+        FmVibrationState { phase_cycles: 0.0, since_pulse_s: 0.0 }
+    }
+
+    #[test]
+    fn a_pulse_keeps_its_width_while_the_error_moves() {
+        let (mut state, mut on, mut widths) = (start(), 0, std::vec::Vec::new());
+        for n in 0..100_000 {
+            let error = 1e-3 * f64::from(n % 370) / 370.0;
+            let force = vibration(PulseShape::Rectangular).step(&mut state, 5.0, &measured(error));
+            if force > 0.0 {
+                on += 1;
+            } else if on > 0 {
+                widths.push(on);
+                on = 0;
+            }
+        }
+        assert!(widths.len() > 80);
+        assert!(widths.iter().all(|&width| width == 100), "{widths:?}");
+    }
+
     #[test]
     fn half_sine_is_the_sine() {
         for i in 0..=1000 {
@@ -155,10 +188,10 @@ mod tests {
     #[test]
     fn pulses_per_second_and_their_width_follow_the_error() {
         for (error, hertz) in [(0.0, 80), (0.5e-3, 120), (-1e-3, 160), (1.0, 160)] {
-            let (mut phase, mut starts, mut samples, mut last) = (0.0, 0, 0, 0.0);
+            let (mut state, mut starts, mut samples, mut last) = (start(), 0, 0, 0.0);
             for _ in 0..100_000 {
                 let force =
-                    vibration(PulseShape::Rectangular).step(&mut phase, 5.0, &measured(error));
+                    vibration(PulseShape::Rectangular).step(&mut state, 5.0, &measured(error));
                 starts += i32::from(force > 0.0 && last == 0.0);
                 samples += i32::from(force > 0.0);
                 last = force;
@@ -175,9 +208,9 @@ mod tests {
             (PulseShape::HalfSine, 2.0 / core::f64::consts::PI),
             (PulseShape::RaisedCosine, 0.5),
         ] {
-            let (mut phase, mut sum) = (0.0, 0.0);
+            let (mut state, mut sum) = (start(), 0.0);
             for _ in 0..1250 {
-                sum += vibration(shape).step(&mut phase, 1.0, &measured(0.0));
+                sum += vibration(shape).step(&mut state, 1.0, &measured(0.0));
             }
             assert!((sum / 100.0 - mean).abs() < 0.02, "{shape:?}: {}", sum / 100.0);
         }
@@ -187,7 +220,7 @@ mod tests {
     fn the_base_is_held_between_pulses() {
         let mut held = vibration(PulseShape::Rectangular);
         held.base_fraction = 0.4;
-        let mut phase = 0.5;
-        assert_eq!(held.step(&mut phase, 10.0, &measured(0.0)), 4.0);
+        let mut state = FmVibrationState { phase_cycles: 0.5, since_pulse_s: 5e-3 };
+        assert_eq!(held.step(&mut state, 10.0, &measured(0.0)), 4.0);
     }
 }

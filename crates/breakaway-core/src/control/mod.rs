@@ -51,6 +51,8 @@ parameters! {
         pub previous_position_m,
         /// The phase of the vibration in cycles, 0 to 1.
         pub phase_cycles,
+        /// Time since the start of the last pulse, s.
+        pub since_pulse_s,
         /// 1 once the two-step supervisor vibrates, else 0.
         pub vibrating,
     }
@@ -65,6 +67,7 @@ impl<R: Real> ControllerState<R> {
             derivative_m_per_s: zero,
             previous_position_m: position_m,
             phase_cycles: zero,
+            since_pulse_s: zero,
             vibrating: zero,
         }
     }
@@ -83,6 +86,19 @@ impl<R: Real> ControllerState<R> {
         self.integral_n = pid.integral_n;
         self.derivative_m_per_s = pid.derivative_m_per_s;
         self.previous_position_m = pid.previous_position_m;
+    }
+}
+
+impl<R: Real> ControllerState<R> {
+    #[inline(always)]
+    fn vibration(&self) -> FmVibrationState<R> {
+        FmVibrationState { phase_cycles: self.phase_cycles, since_pulse_s: self.since_pulse_s }
+    }
+
+    #[inline(always)]
+    fn set_vibration(&mut self, vibration: FmVibrationState<R>) {
+        self.phase_cycles = vibration.phase_cycles;
+        self.since_pulse_s = vibration.since_pulse_s;
     }
 }
 
@@ -136,7 +152,10 @@ impl<R: Real> Controller<R> {
                 let mut pid_state = state.pid();
                 let amplitude = c.pid.step(&mut pid_state, measured);
                 state.set_pid(pid_state);
-                c.vibration.step(&mut state.phase_cycles, amplitude, measured)
+                let mut vibration = state.vibration();
+                let force = c.vibration.step(&mut vibration, amplitude, measured);
+                state.set_vibration(vibration);
+                force
             }
             Self::TwoStep(c) => c.step(state, measured),
         }

@@ -1,6 +1,6 @@
 //! The paper's control in two steps.
 
-use super::{ControllerState, FmVibration, Gains, Measurement, Pid};
+use super::{ControllerState, FmVibration, FmVibrationState, Gains, Measurement, Pid};
 use crate::real::Real;
 
 /// A PID until the joint breaks loose, then vibration with gains of its own.
@@ -14,7 +14,8 @@ use crate::real::Real;
 /// ```
 ///
 /// The joint counts as loose once the part has traveled further than bristles can stretch;
-/// choose the travel above F_s0 / k_e. There is no way back: a joint that sticks again is hit again.
+/// choose the travel above F_s0 / k_e. What is taken over is the amplitude: the force itself falls to
+/// the start of the first pulse. There is no way back: a joint that sticks again is hit again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
 pub struct TwoStep<R> {
@@ -56,9 +57,14 @@ impl<R: Real> TwoStep<R> {
         let gains = self.gains(vibrating);
         let force = self.pid.output(&gains, &filtered, &mut pid, measured);
         state.set_pid(pid);
-        let mut phase = state.phase_cycles;
-        let pulsed = self.vibration.step(&mut phase, force, measured);
-        state.phase_cycles = R::select(vibrating, phase, state.phase_cycles);
+        let waiting = state.vibration();
+        let mut moved = waiting;
+        let pulsed = self.vibration.step(&mut moved, force, measured);
+        let kept = |moved: R, waiting: R| R::select(vibrating, moved, waiting);
+        state.set_vibration(FmVibrationState {
+            phase_cycles: kept(moved.phase_cycles, waiting.phase_cycles),
+            since_pulse_s: kept(moved.since_pulse_s, waiting.since_pulse_s),
+        });
         R::select(vibrating, pulsed, force)
     }
 
