@@ -20,7 +20,7 @@ pub(crate) const SAMPLES: u32 = 400;
 /// Samples that a draw of the disturbance is held for.
 const HOLD: u32 = 16;
 /// Numbers in a state.
-
+pub(crate) const STATE_NUMBERS: usize = 13;
 /// l_f in m.
 const LENGTH_M: f64 = 8e-4;
 const LUGRE: Lugre<f64> = Lugre {
