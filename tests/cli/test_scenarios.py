@@ -82,7 +82,7 @@ def test_what_is_left_out_can_be_set_by_uncommenting() -> None:
 def test_a_template_names_the_alternatives() -> None:
     text = scenario_template(bk.load_scenario("paper_as_computed"))
     for choice in ("two_region", "push_only", "ramp", "step", "fm_vibration", "two_step", "given"):
-        assert f' = "{choice}": ' in text
+        assert f' "{choice}": ' in text
 
 
 def test_init_does_not_overwrite(call: Call, tmp_path: Path) -> None:

@@ -57,7 +57,8 @@ def init(
     from breakaway.scenario import load_scenario
     from breakaway.scenario.template import scenario_template
 
-    content = scenario_template(load_scenario(preset))
+    values = load_scenario(preset).with_(name=file.stem, description=f"Made from {preset}")
+    content = scenario_template(values)
     if file.is_file() and not force:
         raise OutputError(f"{file}: exists; give another name, or --force to overwrite it")
     write_atomically(file, content.encode())

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from breakaway.errors import ScenarioError
@@ -120,12 +121,13 @@ def _descend(
 
 def _tags(model: type[BaseModel]) -> set[str]:
     """Names by which a union may refer to the model."""
-    tags = {model.__name__}
-    for name in ("law", "kind"):
-        field = model.model_fields.get(name)
-        if field is not None:
-            tags.add(str(field.default))
-    return tags
+    return {model.__name__, *(str(field.default) for _, field in _tag_fields(model))}
+
+
+def _tag_fields(model: type[BaseModel] | None) -> list[tuple[str, FieldInfo]]:
+    """The field that tells the members of a union apart, if the model has one."""
+    fields = model.model_fields if model else {}
+    return [(name, fields[name]) for name in ("law", "kind") if name in fields]
 
 
 def _models_in(annotation: Any) -> list[type[BaseModel]]:  # noqa: ANN401 - any annotation
@@ -138,7 +140,8 @@ def _unknown_key(names: Sequence[str], owner: type[BaseModel] | None) -> str:
     known = list(owner.model_fields) if owner else []
     near = difflib.get_close_matches(names[-1], known, n=1, cutoff=0.5)
     hint = f"did you mean {near[0]}?" if near else f"known keys: {', '.join(known)}"
-    return f"{'.'.join(names)}: is not a known key; {hint}"
+    whose = [f" (the keys of {tag} '{field.default}')" for tag, field in _tag_fields(owner)]
+    return f"{'.'.join(names)}: is not a known key; {hint}{''.join(whose)}"
 
 
 def _wrong_kind(field: str, value: object, context: Mapping[str, Any]) -> str:

@@ -100,14 +100,14 @@ def _choices(chosen: BaseModel, field: FieldInfo) -> list[str]:
     tag = next((name for name in _TAGS if name in type(chosen).model_fields), None)
     if tag is None or len(models) < 2:
         return []
-    lines = _comment(f'{tag} = "{getattr(chosen, tag)}": {_summary(type(chosen))}')
+    lines = _comment(f'{tag} "{getattr(chosen, tag)}": {_summary(type(chosen))}')
     for model in models:
         if model is type(chosen):
             continue
         other = model.model_fields[tag].default
         keys = ", ".join(name for name in model.model_fields if name != tag)
         takes = f" Keys: {keys}." if keys else " No keys."
-        lines += _comment(f'or {tag} = "{other}": {_summary(model)}{takes}')
+        lines += _comment(f'or {tag} "{other}": {_summary(model)}{takes}')
     return lines
 
 
