@@ -22,7 +22,7 @@ def test_a_step_that_does_not_resolve_the_bristle(paper):
     refused(paper, slow, "timing.steps_per_period: 1", "0.001", "give 20 or more")
     finer = paper.with_({**slow, "timing.steps_per_period": 20})
     assert finer.timing.steps_per_period == 20
-    refused(paper, {"timing.integrator": "rk4"}, "rk4 is explicit", "give 4 or more")
+    refused(paper, {"timing.integrator": "rk4"}, "rk4 is explicit", "give 3 or more")
 
 
 def test_the_guard_keeps_a_stuck_joint_stuck(paper):

@@ -109,8 +109,9 @@ class Scenario(Model):
             damping = self.joint.damping_n_s_per_m
             if damping * longest_s > m:
                 longest_s, rule = m / damping, "part.mass_kg / joint.damping_n_s_per_m"
-        if step_s > longest_s:
-            needed = timing.control_period_s / longest_s if longest_s > 0 else float("inf")
+        if step_s > longest_s * (1 + 1e-9):
+            ratio = timing.control_period_s / longest_s if longest_s > 0 else float("inf")
+            needed = ratio * (1 - 1e-9)
             remedy = f"give {ceil(needed)} or more" if needed <= 1e5 else "sample faster"
             raise ValueError(
                 f"timing.steps_per_period: {timing.steps_per_period!r} makes steps of {step_s:.4g} "
