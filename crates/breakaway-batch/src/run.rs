@@ -136,38 +136,36 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
         let redraw = if disturbance.var == 0.0 { u64::MAX } else { draws.redraw_after(n) };
         let draws = Draws { disturbance: draws.held() };
         let check = (n / per_check + 1) * per_check;
-        if n == next_row || n == last_row {
+        let left = if n == next_row || n == last_row {
             let sample = progress.take_one(job, draws);
             n += 1;
-            if n == next_row + 1 {
+            let bounded = progress.metrics.bounded == 1.0;
+            if n == next_row + 1 && bounded {
                 record(&mut trace, &sample);
                 next_row += job.trace_every;
             }
-            if n == job.samples {
+            if n == job.samples && bounded {
                 record(&mut trace, &job.end_of(&sample, &progress.state));
             }
+            (!bounded).then_some(sample)
         } else {
             let end = job.samples.min(redraw).min(next_row).min(last_row).min(check);
-            progress.advance(job, draws, end - n);
+            let left = progress.advance(job, draws, end - n);
             n = end;
+            left
+        };
+        if let Some(sample) = left {
+            progress.end_at(&sample);
+            if job.trace_every != 0 {
+                record(&mut trace, &sample);
+            }
         }
         if n == check {
             keep_going()?;
         }
     }
     let Progress { state, metrics } = progress;
-    if metrics.bounded == 0.0 && job.trace_every != 0 {
-        record_divergence(&mut trace, job, state, draws.held());
-    }
     Ok(Run { outcome: metrics.outcome(&job.limits), metrics, state, trace })
-}
-
-/// Keeps the sample that left the bounds, unless it is the last row already.
-fn record_divergence(trace: &mut Trace, job: &Job, mut state: ExtractionState<f64>, held: f64) {
-    let sample = job.extraction.step(&mut state, Draws { disturbance: held });
-    if trace[0].last() != Some(&sample.time_s) {
-        record(trace, &sample);
-    }
 }
 
 /// A run under way.
@@ -177,35 +175,39 @@ struct Progress {
 }
 
 impl Progress {
-    /// Takes `count` samples with one draw; stops where the run leaves its bounds, in the state
-    /// before the sample that does. What moves
-    /// at every sample is kept in local variables, and so in registers.
+    /// Takes `count` samples with one draw; stops at a sample that leaves the bounds, and gives it.
+    /// What moves at every sample is kept in local variables, and so in registers.
     #[inline(always)]
-    fn advance(&mut self, job: &Job, draws: Draws<f64>, count: u64) {
+    fn advance(&mut self, job: &Job, draws: Draws<f64>, count: u64) -> Option<Sample<f64>> {
         let (extraction, limits) = (job.extraction, job.limits);
         let (mut state, mut metrics) = (self.state, self.metrics);
+        let mut last = None;
         for _ in 0..count {
-            let before = state;
             let sample = extraction.step(&mut state, draws);
             metrics.update(&limits, &sample);
             if metrics.bounded == 0.0 {
-                state = before;
+                last = Some(sample);
                 break;
             }
         }
         (self.state, self.metrics) = (state, metrics);
+        last
     }
 
     /// Takes one sample and gives it.
     #[inline(always)]
     fn take_one(&mut self, job: &Job, draws: Draws<f64>) -> Sample<f64> {
-        let before = self.state;
         let sample = job.extraction.step(&mut self.state, draws);
         self.metrics.update(&job.limits, &sample);
-        if self.metrics.bounded == 0.0 {
-            self.state = before;
-        }
         sample
+    }
+
+    /// Puts the plant back to where it was at a sample: what came after left the bounds.
+    fn end_at(&mut self, sample: &Sample<f64>) {
+        let plant = &mut self.state.plant;
+        plant.position_m = sample.position_m;
+        plant.velocity_m_per_s = sample.velocity_m_per_s;
+        plant.bristle_m = sample.bristle_m;
     }
 }
 
