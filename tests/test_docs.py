@@ -93,3 +93,9 @@ def test_examples_run(script, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()
+
+
+def test_no_placeholder_is_left():
+    for page in PAGES:
+        left = re.findall(r"^[A-Z]{3,}_[A-Z]{3,}$", page.read_text(encoding="utf-8"), re.M)
+        assert not left, f"{page.name}: {left}"
