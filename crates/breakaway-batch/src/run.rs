@@ -181,6 +181,7 @@ impl Progress {
     fn advance(&mut self, job: &Job, draws: Draws<f64>, count: u64) -> Option<Sample<f64>> {
         let (extraction, limits) = (job.extraction, job.limits);
         let (mut state, mut metrics) = (self.state, self.metrics);
+        metrics.bounded = 1.0; // as it is; said here, it need not be asked at every sample
         let mut last = None;
         for _ in 0..count {
             let sample = extraction.step(&mut state, draws);

@@ -154,7 +154,8 @@ impl<R: Real> Metrics<R> {
         let travel = counted(sample.next_position_m - sample.position_m);
         self.count_error(sample.time_s, period_s, counted(error));
         self.count_force(period_s, force, travel, counted(sample.joint_force_n));
-        let missed = R::zero().lt((sample.command_n - sample.applied_force_n).abs());
+        let (asked, given) = (sample.command_n, sample.applied_force_n);
+        let missed = asked.lt(given) | given.lt(asked);
         self.saturated_s = self.saturated_s + R::select(missed, period_s, R::zero());
         self.count_impacts(period_s, force, travel);
         let in_guide = sample.position_m.lt(limits.release_position_m);
