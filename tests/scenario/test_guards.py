@@ -41,6 +41,9 @@ def test_the_guard_keeps_a_stuck_joint_stuck(paper):
     run = bk.simulate(pushed)
     assert run.outcome == "not_released"
     assert run.metrics.final_position_m < 2e-4
+    # Unchecked, one step in each period: the wrong answer that the guard is for.
+    timing = pushed.timing.model_copy(update={"steps_per_period": 1})
+    assert bk.simulate(pushed.model_copy(update={"timing": timing})).outcome == "released"
 
 
 def test_a_part_that_is_pulled_back_is_not_released(paper):

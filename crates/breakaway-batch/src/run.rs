@@ -62,7 +62,8 @@ const STEPS_PER_CHECK: u64 = 1 << 14;
 /// `keep_going` is asked now and then; once it answers `Err`, so does the run.
 ///
 /// A row of the trace holds the state at a sample and the forces during the period after it. The
-/// last row is the state after the last period, with the forces of that period.
+/// last row is the state after the last period, with the forces of that period; in a run that
+/// diverges, the sample that left the bounds.
 ///
 /// The loop is compiled twice, because compilers target the oldest processor of a family, where
 /// a fused multiply-add is a library call. Both give the same bits.
