@@ -12,29 +12,36 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from breakaway._core import __version__
-from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioError
+from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioError, StudyError
 
 if TYPE_CHECKING:
     from breakaway import design
+    from breakaway.batch import Batch, draw_columns, grid_columns, simulate_many
     from breakaway.identify import JointFile, identify_inertia_friction
     from breakaway.imposed import ImposedMotion, impose_motion
     from breakaway.logs import Log, read_log
     from breakaway.resolution import resolve
     from breakaway.run import Outcome, Run, RunMetrics
     from breakaway.scenario import (
+        BandLimitedDisturbance,
         FmPulses,
         FmVibration,
         Gains,
+        GaussianDisturbance,
         IdealActuator,
         Limits,
+        LogNormal,
+        LogUniform,
         Lugre,
         MinimumJerk,
+        Normal,
         Part,
         Pid,
         PidSettings,
         PolePlacement,
         PushOnlyActuator,
         RampReference,
+        Samples,
         Scenario,
         StepReference,
         Timing,
@@ -42,6 +49,7 @@ if TYPE_CHECKING:
         TrapezoidalVelocity,
         TwoRegion,
         TwoStep,
+        Uniform,
         UniformDisturbance,
         load_scenario,
         preset_names,
@@ -52,25 +60,32 @@ if TYPE_CHECKING:
 
 # Where each public name lives; loaded on first use, so that `import breakaway` stays quick.
 _HOMES = {
+    "breakaway.batch": ("Batch", "draw_columns", "grid_columns", "simulate_many"),
     "breakaway.identify": ("JointFile", "identify_inertia_friction"),
     "breakaway.imposed": ("ImposedMotion", "impose_motion"),
     "breakaway.logs": ("Log", "read_log"),
     "breakaway.resolution": ("resolve",),
     "breakaway.run": ("Outcome", "Run", "RunMetrics"),
     "breakaway.scenario": (
+        "BandLimitedDisturbance",
         "FmPulses",
         "FmVibration",
         "Gains",
+        "GaussianDisturbance",
         "IdealActuator",
         "Limits",
+        "LogNormal",
+        "LogUniform",
         "Lugre",
         "MinimumJerk",
+        "Normal",
         "Part",
         "Pid",
         "PidSettings",
         "PolePlacement",
         "PushOnlyActuator",
         "RampReference",
+        "Samples",
         "Scenario",
         "StepReference",
         "Timing",
@@ -78,6 +93,7 @@ _HOMES = {
         "TrapezoidalVelocity",
         "TwoRegion",
         "TwoStep",
+        "Uniform",
         "UniformDisturbance",
         "load_scenario",
         "preset_names",
@@ -89,18 +105,24 @@ _HOMES = {
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
+    "BandLimitedDisturbance",
+    "Batch",
     "BreakawayError",
     "FmPulses",
     "FmVibration",
     "Gains",
+    "GaussianDisturbance",
     "IdealActuator",
     "ImposedMotion",
     "JointFile",
     "Limits",
     "Log",
     "LogError",
+    "LogNormal",
+    "LogUniform",
     "Lugre",
     "MinimumJerk",
+    "Normal",
     "Outcome",
     "OutputError",
     "Part",
@@ -111,17 +133,22 @@ __all__ = [
     "RampReference",
     "Run",
     "RunMetrics",
+    "Samples",
     "Scenario",
     "ScenarioError",
     "StepReference",
+    "StudyError",
     "Timing",
     "Trace",
     "TrapezoidalVelocity",
     "TwoRegion",
     "TwoStep",
+    "Uniform",
     "UniformDisturbance",
     "__version__",
     "design",
+    "draw_columns",
+    "grid_columns",
     "identify_inertia_friction",
     "impose_motion",
     "load_scenario",
@@ -131,6 +158,7 @@ __all__ = [
     "save_scenario",
     "scenario_schema",
     "simulate",
+    "simulate_many",
 ]
 
 

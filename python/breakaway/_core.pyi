@@ -1,6 +1,6 @@
 """The compiled core of breakaway."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 __version__: str
@@ -15,3 +15,19 @@ def impose(
     velocities_m_per_s: Sequence[float],
 ) -> list[bytes]: ...
 def breakaway_force(joint: Mapping[str, Any], position_m: float) -> float: ...
+
+OUTCOMES: Sequence[str]
+
+def run_many(
+    job: Mapping[str, Any],
+    runs: bytes,
+    varied: Sequence[tuple[int, bytes]],
+    figures: Sequence[str],
+    outcome: bool,
+    threads: int,
+    instructions: str,
+    tell: Callable[[int], None],
+) -> tuple[dict[str, bytes], bytes]: ...
+def instructions() -> list[str]: ...
+def number_place(job: Mapping[str, Any]) -> int: ...
+def fractions(seed: int, runs: bytes, part: int) -> bytes: ...

@@ -25,6 +25,12 @@ class ScenarioError(BreakawayError):
     exit_code = 2
 
 
+class StudyError(BreakawayError):
+    """A batch or a study can not be run as asked: its file, its variations or its folder."""
+
+    exit_code = 2
+
+
 class LogError(BreakawayError):
     """A measured log can not be read, or can not carry the analysis that was asked for."""
 

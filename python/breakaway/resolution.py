@@ -45,22 +45,28 @@ def resolve(scenario: Scenario) -> Scenario:
     )
     explicit_limits = limits.model_copy(
         update={
-            "diverged_error_m": limits.diverged_error_m or joint.engagement_length_m / 2,
-            "diverged_force_n": limits.diverged_force_n or 20 * joint.stiction_n,
-            "breakaway_travel_m": limits.breakaway_travel_m
-            or 2 * joint.stiction_n / joint.stiffness_n_per_m,
+            "diverged_error_m": joint.engagement_length_m / 2
+            if limits.diverged_error_m is None
+            else limits.diverged_error_m,
+            "diverged_force_n": 20 * joint.stiction_n
+            if limits.diverged_force_n is None
+            else limits.diverged_force_n,
+            "breakaway_travel_m": 2 * joint.stiction_n / joint.stiffness_n_per_m
+            if limits.breakaway_travel_m is None
+            else limits.breakaway_travel_m,
         }
     )
     return scenario.model_copy(
         update={
             "joint": explicit_joint,
             "limits": explicit_limits,
-            "controller": _with_gains(scenario),
+            "controller": with_gains(scenario),
         }
     )
 
 
-def _with_gains(scenario: Scenario) -> Pid | FmVibration | TwoStep:
+def with_gains(scenario: Scenario) -> Pid | FmVibration | TwoStep:
+    """Give the controller with its gains as numbers."""
     controller = scenario.controller
     if isinstance(controller, Pid):
         return controller.model_copy(update={"gains": given_gains(controller.gains, scenario)})
@@ -91,22 +97,28 @@ def given_gains(gains: Gains | PolePlacement, scenario: Scenario) -> Gains:
 
 def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
     """Values of a resolved scenario under the names of the core."""
-    values = resolved.model_dump()
+    values = resolved.model_dump(warnings=False)  # a batch puts columns where numbers are
     timing, limits = values["timing"], values["limits"]
     joint = values["joint"]
     infinite = float("inf")
     controller = values["controller"]
     for gains in _gain_tables(controller):
         del gains["kind"]
+    pid = controller.get("pid", controller)
+    if isinstance(pid["derivative_filter_s"], float) and pid["derivative_filter_s"] == 0.0:
+        pid["derivative_filter_s"] = None
     disturbance = values["disturbance"]
-    del disturbance["law"], timing["duration_s"]
+    law = {"kind": disturbance.pop("law")}
+    if "bandwidth_hz" in disturbance:
+        law["bandwidth_hz"] = disturbance.pop("bandwidth_hz")
+    del timing["duration_s"]
     release_position_m = joint["engagement_length_m"] - limits.pop("release_tolerance_m")
     return {
         "extraction": {
             "joint": joint,
             "part": values["part"],
             "reference": values["reference"],
-            "disturbance": disturbance,
+            "disturbance": {"law": law, **disturbance},
             "actuator": values["actuator"],
             "controller": controller,
             "timing": timing,

@@ -4,37 +4,72 @@
 //! SC 2011) turns a key and a counter into four random words. A draw therefore depends on nothing
 //! that was drawn before it: not on threads, lanes or the order of runs.
 
+// Indexed loops over fixed arrays are what compilers vectorize.
+#![allow(clippy::needless_range_loop)]
+
+use breakaway_core::Real;
+use breakaway_core::disturbance::{Disturbance, DrawLaw};
+
+use crate::normal::quantile;
+
 /// What a draw is for; each purpose has draws of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
 pub enum Stream {
-    /// The disturbance of the joint force.
-    Disturbance = 0,
+    /// The disturbance of the joint.
+    Disturbance,
+    /// A number of the scenario that differs from run to run, counted from zero.
+    Part(u32),
 }
 
-/// Four random words for a counter and a key.
+impl Stream {
+    const fn word(self) -> u32 {
+        match self {
+            Self::Disturbance => 0,
+            Self::Part(number) => 1 + number,
+        }
+    }
+}
+
+/// Four random words for each of `N` counters, side by side, and a key.
 #[must_use]
-pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+#[inline(always)]
+pub fn philox4x32<const N: usize>(mut counter: [[u32; N]; 4], mut key: [u32; 2]) -> [[u32; N]; 4] {
     for round in 0..10 {
         if round > 0 {
             key[0] = key[0].wrapping_add(0x9E37_79B9);
             key[1] = key[1].wrapping_add(0xBB67_AE85);
         }
-        let product0 = u64::from(counter[0]) * 0xD251_1F53;
-        let product1 = u64::from(counter[2]) * 0xCD9E_8D57;
-        counter = [
-            (product1 >> 32) as u32 ^ counter[1] ^ key[0],
-            product1 as u32,
-            (product0 >> 32) as u32 ^ counter[3] ^ key[1],
-            product0 as u32,
-        ];
+        for i in 0..N {
+            let product0 = u64::from(counter[0][i]) * 0xD251_1F53;
+            let product1 = u64::from(counter[2][i]) * 0xCD9E_8D57;
+            counter[0][i] = (product1 >> 32) as u32 ^ counter[1][i] ^ key[0];
+            counter[1][i] = product1 as u32;
+            counter[2][i] = (product0 >> 32) as u32 ^ counter[3][i] ^ key[1];
+            counter[3][i] = product0 as u32;
+        }
     }
     counter
 }
 
-/// Draw number `index` of a stream, uniform on [-1, 1): 53 bits of it.
+/// Draw number `index[i]` of run `run[i]`: 53 random bits each.
 ///
 /// The key is the seed; the counter is (index, stream, run), the run in two words.
+#[inline(always)]
+fn bits<const N: usize>(seed: u64, run: &[u64; N], stream: Stream, index: &[u32; N]) -> [u64; N] {
+    let (mut low, mut high) = ([0; N], [0; N]);
+    for i in 0..N {
+        (low[i], high[i]) = (run[i] as u32, (run[i] >> 32) as u32);
+    }
+    let counter = [*index, [stream.word(); N], low, high];
+    let words = philox4x32(counter, [seed as u32, (seed >> 32) as u32]);
+    let mut bits = [0; N];
+    for i in 0..N {
+        bits[i] = (u64::from(words[1][i]) << 32 | u64::from(words[0][i])) >> 11;
+    }
+    bits
+}
+
+/// Draw number `index` of a stream, uniform on [-1, 1): 53 bits of it.
 ///
 /// # Example
 /// ```
@@ -46,56 +81,137 @@ pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
 /// ```
 #[must_use]
 pub fn uniform(seed: u64, run: u64, stream: Stream, index: u32) -> f64 {
-    let counter = [index, stream as u32, run as u32, (run >> 32) as u32];
-    let words = philox4x32(counter, [seed as u32, (seed >> 32) as u32]);
-    let bits = (u64::from(words[1]) << 32 | u64::from(words[0])) >> 11;
+    centered(bits(seed, &[run], stream, &[index])[0])
+}
+
+/// Draw number 0 of a stream, uniform on (0, 1): for a number that a run has from its start.
+///
+/// # Example
+/// ```
+/// use breakaway_batch::draws::{Stream, fraction};
+/// let u = fraction(7, 3, Stream::Part(0));
+/// assert!(0.0 < u && u < 1.0);
+/// ```
+#[must_use]
+pub fn fraction(seed: u64, run: u64, stream: Stream) -> f64 {
+    open(bits(seed, &[run], stream, &[0])[0])
+}
+
+/// On [-1, 1).
+#[inline(always)]
+fn centered(bits: u64) -> f64 {
     bits as f64 * 2.0_f64.powi(-52) - 1.0
 }
 
-/// The draws of one run, each held for a time.
+/// On (0, 1); its ends can not be drawn.
+fn open(bits: u64) -> f64 {
+    (bits >> 1) as f64 * 2.0_f64.powi(-52) + 2.0_f64.powi(-53)
+}
+
+/// Largest |w| of the normal laws.
+const W_MAX: f64 = 4.0;
+/// P(w < -4) of a normal variable.
+const BEYOND: f64 = 3.167_124_183_311_992e-5;
+
+/// The draws of `N` runs side by side, each held for a time of its own.
 ///
 /// Draw number j holds from the first sample at or after j · hold on (a sample within 1e-6 periods
 /// of it counts as at it). A hold time need not be a whole number of control periods, but must
 /// not be shorter than one.
 #[derive(Clone, Copy, Debug)]
-pub struct HeldDraws {
+pub struct HeldDraws<const N: usize> {
     seed: u64,
-    run: u64,
-    samples_per_draw: f64,
-    draws: u32,
-    next_redraw: u64,
-    held: f64,
+    run: [u64; N],
+    law: [DrawLaw<f64>; N],
+    hold_s: [f64; N],
+    samples_per_draw: [f64; N],
+    draws: [u32; N],
+    next_redraw: [u64; N],
+    low_passed: [f64; N],
+    held: [f64; N],
 }
 
-impl HeldDraws {
-    /// For a hold time and a sampling period, both in s and above zero.
+impl<const N: usize> HeldDraws<N> {
+    /// For the runs of a seed, with the disturbance of each and their sampling period in s. Draws
+    /// of a run without a disturbance are never due.
     #[must_use]
-    pub fn new(seed: u64, run: u64, hold_s: f64, period_s: f64) -> Self {
-        let samples_per_draw = hold_s / period_s;
-        Self { seed, run, samples_per_draw, draws: 0, next_redraw: 0, held: 0.0 }
+    pub fn new(
+        seed: u64,
+        run: [u64; N],
+        disturbance: impl Fn(usize) -> Disturbance<f64>,
+        period_s: impl Fn(usize) -> f64,
+    ) -> Self {
+        let all: [Disturbance<f64>; N] = std::array::from_fn(disturbance);
+        Self {
+            seed,
+            run,
+            law: all.map(|one| one.law),
+            hold_s: all.map(|one| one.hold_s),
+            samples_per_draw: std::array::from_fn(|i| all[i].hold_s / period_s(i)),
+            draws: [0; N],
+            next_redraw: all.map(|one| if one.var == 0.0 { u64::MAX } else { 0 }),
+            low_passed: [0.0; N],
+            held: [0.0; N],
+        }
     }
 
     /// Draws for sample number `sample` where one is due; gives the sample of the next draw.
     /// Samples must be asked for in order.
+    #[inline(always)]
     pub fn redraw_after(&mut self, sample: u64) -> u64 {
-        if sample >= self.next_redraw {
-            self.held = uniform(self.seed, self.run, Stream::Disturbance, self.draws);
-            self.draws += 1;
-            self.next_redraw = (f64::from(self.draws) * self.samples_per_draw - 1e-6).ceil() as u64;
+        let mut next = u64::MAX;
+        for i in 0..N {
+            next = next.min(self.next_redraw[i]);
         }
-        self.next_redraw
+        if sample < next {
+            return next;
+        }
+        let bits = bits(self.seed, &self.run, Stream::Disturbance, &self.draws);
+        next = u64::MAX;
+        for i in 0..N {
+            if sample >= self.next_redraw[i] {
+                self.held[i] = self.draw(i, bits[i]);
+                self.draws[i] += 1;
+                let due = f64::from(self.draws[i]) * self.samples_per_draw[i] - 1e-6;
+                self.next_redraw[i] = due.ceil() as u64;
+            }
+            next = next.min(self.next_redraw[i]);
+        }
+        next
     }
 
-    /// The draw that holds; zero before the first.
+    #[inline(always)]
+    fn draw(&mut self, i: usize, bits: u64) -> f64 {
+        match self.law[i] {
+            DrawLaw::Uniform => centered(bits),
+            DrawLaw::Gaussian => quantile(BEYOND + open(bits) * (1.0 - 2.0 * BEYOND)),
+            DrawLaw::BandLimited { bandwidth_hz } => self.low_pass(i, bandwidth_hz, bits),
+        }
+    }
+
+    /// w ← a w + √(1 − a²) ξ with a = exp(−2π f_b hold) and ξ normal: noise of variance 1 behind a
+    /// first-order low-pass, from its first draw on.
+    fn low_pass(&mut self, i: usize, bandwidth_hz: f64, bits: u64) -> f64 {
+        let a = Real::exp(-std::f64::consts::TAU * bandwidth_hz * self.hold_s[i]);
+        let fresh = quantile(open(bits));
+        self.low_passed[i] = match self.draws[i] {
+            0 => fresh,
+            _ => a * self.low_passed[i] + (1.0 - a * a).sqrt() * fresh,
+        };
+        self.low_passed[i].clamp(-W_MAX, W_MAX)
+    }
+
+    /// The draw of each run that holds; zero before the first.
     #[must_use]
-    pub fn held(&self) -> f64 {
-        self.held
+    pub fn held(&self) -> &[f64; N] {
+        &self.held
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use breakaway_core::disturbance::DisturbedQuantity;
 
     #[test]
     fn philox_known_answers() {
@@ -110,7 +226,7 @@ mod tests {
             ),
         ];
         for (counter, key, words) in known {
-            assert_eq!(philox4x32(counter, key), words);
+            assert_eq!(philox4x32(counter.map(|word| [word]), key), words.map(|word| [word]));
         }
     }
 
@@ -132,11 +248,14 @@ mod tests {
 
     #[test]
     fn a_draw_is_held_for_its_time() {
-        let mut draws = HeldDraws::new(5, 0, 1e-4, 1e-5);
+        let law = DrawLaw::Uniform;
+        let acts_on = DisturbedQuantity::JointForce;
+        let disturbance = Disturbance { law, var: 0.1, hold_s: 1e-4, acts_on };
+        let mut draws = HeldDraws::new(5, [0], |_| disturbance, |_| 1e-5);
         let held: Vec<f64> = (0..100_000)
             .map(|n| {
                 draws.redraw_after(n);
-                draws.held()
+                draws.held()[0]
             })
             .collect();
         for (j, block) in held.chunks(10).enumerate() {

@@ -1,48 +1,109 @@
 //! The figures that a finished run is reported by.
 
+use breakaway_core::metrics::Groups;
+
 use crate::run::{Job, Run};
 
 /// A figure of a finished run.
-type Figure = fn(&Job, &Run) -> f64;
+#[derive(Clone, Copy)]
+pub struct Figure {
+    /// Its name, which carries its unit.
+    pub name: &'static str,
+    /// What must be counted for it.
+    pub needs: Groups,
+    /// Its value. What did not happen is not a number.
+    pub value: fn(&Job, &Run) -> f64,
+}
 
-/// Every figure by its name, which carries its unit. What did not happen is not a number.
-pub const FIGURES: &[(&str, Figure)] = &[
-    ("simulated_s", |_, run| run.metrics.time_s),
-    ("iae_m_s", |_, run| run.metrics.iae_m_s),
-    ("ise_m2_s", |_, run| run.metrics.ise_m2_s),
-    ("itae_m_s2", |_, run| run.metrics.itae_m_s2),
-    ("largest_error_m", |_, run| run.metrics.largest_error_m),
-    ("peak_force_n", |_, run| run.metrics.peak_force_n),
-    ("peak_over_breakaway", |job, run| {
-        run.metrics.peak_force_n / job.extraction.joint.breakaway_force(0.0)
-    }),
-    ("mean_force_n", |_, run| run.metrics.impulse_n_s / run.metrics.time_s),
-    ("rms_force_n", |_, run| (run.metrics.force_square_n2_s / run.metrics.time_s).sqrt()),
-    ("impulse_n_s", |_, run| run.metrics.impulse_n_s),
-    ("work_j", |_, run| run.metrics.work_j),
-    ("friction_loss_j", |job, run| run.metrics.joint_work_j - stored_in_bristles_j(job, run)),
-    ("impacts", |_, run| run.metrics.impacts),
-    ("contact_time_s", |_, run| run.metrics.contact_s),
-    ("mean_impact_s", |_, run| run.metrics.contact_s / run.metrics.impacts),
-    ("largest_step_m", |_, run| run.metrics.largest_step_m),
-    ("largest_impact_work_j", |_, run| run.metrics.largest_impact_work_j),
-    ("largest_jump_m", |_, run| run.metrics.largest_jump_m),
-    ("time_to_breakaway_s", |_, run| known_time(run.metrics.breakaway_s)),
-    ("time_to_release_s", |_, run| known_time(run.metrics.release_s)),
-    ("release_velocity_m_per_s", |_, run| {
-        if run.metrics.release_s.is_finite() {
-            run.metrics.release_velocity_m_per_s
-        } else {
-            f64::NAN
-        }
-    }),
-    ("saturation_time_s", |_, run| run.metrics.saturated_s),
-    ("final_position_m", |_, run| run.state.plant.position_m),
+const NONE: Groups = Groups::NONE;
+const TIME: Groups = Groups { time: true, ..NONE };
+const IAE: Groups = Groups { iae: true, ..NONE };
+const ERROR: Groups = Groups { error: true, ..NONE };
+const EXTREMES: Groups = Groups { extremes: true, ..NONE };
+const FORCE: Groups = Groups { force: true, ..NONE };
+const FORCE_AND_TIME: Groups = FORCE.and(TIME);
+const IMPACTS: Groups = Groups { impacts: true, ..NONE };
+const JUMP: Groups = Groups { jump: true, ..NONE };
+const END: Groups = Groups { end: true, ..NONE };
+const FORCE_AND_END: Groups = FORCE.and(END);
+const EVENTS: Groups = Groups { events: true, ..NONE };
+
+/// Every figure.
+pub const FIGURES: &[Figure] = &[
+    Figure { name: "simulated_s", needs: TIME, value: |_, run| run.metrics.time_s },
+    Figure { name: "iae_m_s", needs: IAE, value: |_, run| run.metrics.iae_m_s },
+    Figure { name: "ise_m2_s", needs: ERROR, value: |_, run| run.metrics.ise_m2_s },
+    Figure { name: "itae_m_s2", needs: ERROR, value: |_, run| run.metrics.itae_m_s2 },
+    Figure {
+        name: "largest_error_m",
+        needs: EXTREMES,
+        value: |_, run| run.metrics.largest_error_m,
+    },
+    Figure { name: "peak_force_n", needs: EXTREMES, value: |_, run| run.metrics.peak_force_n },
+    Figure {
+        name: "peak_over_breakaway",
+        needs: EXTREMES,
+        value: |job, run| run.metrics.peak_force_n / job.extraction.joint.breakaway_force(0.0),
+    },
+    Figure {
+        name: "mean_force_n",
+        needs: FORCE_AND_TIME,
+        value: |_, run| run.metrics.impulse_n_s / run.metrics.time_s,
+    },
+    Figure {
+        name: "rms_force_n",
+        needs: FORCE_AND_TIME,
+        value: |_, run| (run.metrics.force_square_n2_s / run.metrics.time_s).sqrt(),
+    },
+    Figure { name: "impulse_n_s", needs: FORCE, value: |_, run| run.metrics.impulse_n_s },
+    Figure { name: "work_j", needs: FORCE, value: |_, run| run.metrics.work_j },
+    Figure {
+        name: "friction_loss_j",
+        needs: FORCE_AND_END,
+        value: |job, run| run.metrics.joint_work_j - stored_in_bristles_j(job, run),
+    },
+    Figure { name: "impacts", needs: IMPACTS, value: |_, run| run.metrics.impacts },
+    Figure { name: "contact_time_s", needs: IMPACTS, value: |_, run| run.metrics.contact_s },
+    Figure {
+        name: "mean_impact_s",
+        needs: IMPACTS,
+        value: |_, run| run.metrics.contact_s / run.metrics.impacts,
+    },
+    Figure { name: "largest_step_m", needs: IMPACTS, value: |_, run| run.metrics.largest_step_m },
+    Figure {
+        name: "largest_impact_work_j",
+        needs: IMPACTS,
+        value: |_, run| run.metrics.largest_impact_work_j,
+    },
+    Figure { name: "largest_jump_m", needs: JUMP, value: |_, run| run.metrics.largest_jump_m },
+    Figure {
+        name: "time_to_breakaway_s",
+        needs: EVENTS,
+        value: |_, run| known_time(run.metrics.breakaway_s),
+    },
+    Figure {
+        name: "time_to_release_s",
+        needs: EVENTS,
+        value: |_, run| known_time(run.metrics.release_s),
+    },
+    Figure {
+        name: "release_velocity_m_per_s",
+        needs: EVENTS,
+        value: |_, run| {
+            if run.metrics.release_s.is_finite() {
+                run.metrics.release_velocity_m_per_s
+            } else {
+                f64::NAN
+            }
+        },
+    },
+    Figure { name: "saturation_time_s", needs: FORCE, value: |_, run| run.metrics.saturated_s },
+    Figure { name: "final_position_m", needs: END, value: |_, run| run.metrics.end_position_m },
 ];
 
 /// ½ k_e z² in J.
 fn stored_in_bristles_j(job: &Job, run: &Run) -> f64 {
-    let z = run.state.plant.bristle_m;
+    let z = run.metrics.end_bristle_m;
     0.5 * job.extraction.joint.stiffness_n_per_m() * z * z
 }
 

@@ -4,14 +4,21 @@
 
 #![deny(unsafe_code)]
 
+pub mod batch;
 pub mod draws;
 pub mod figures;
 pub mod imposed;
+pub mod instructions;
 pub mod lanes;
+pub mod normal;
 pub mod run;
+#[cfg(feature = "yardstick")]
+pub mod yardstick;
 
+pub use batch::{Batch, Results, Varied, Wanted, run_batch};
 pub use draws::HeldDraws;
-pub use figures::FIGURES;
+pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
+pub use instructions::Instructions;
 pub use lanes::Lanes;
 pub use run::{Job, Run, TRACE_COLUMNS, Trace, run};

@@ -1,11 +1,10 @@
 //! One run, with the trace that was asked for.
 
 use breakaway_core::actuator::Actuator;
-use breakaway_core::control::Controller;
+use breakaway_core::control::{Controller, Pid};
 use breakaway_core::extraction::{Sample, Timing};
 use breakaway_core::joint::Joint;
-use breakaway_core::metrics::Limits;
-use breakaway_core::plant::Integrator;
+use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
 
 use crate::draws::HeldDraws;
@@ -48,8 +47,6 @@ pub struct Run {
     pub outcome: Outcome,
     /// Its sums and extremes.
     pub metrics: Metrics<f64>,
-    /// The state it ended in.
-    pub state: ExtractionState<f64>,
     /// The rows that were asked for.
     pub trace: Trace,
 }
@@ -66,7 +63,8 @@ const STEPS_PER_CHECK: u64 = 1 << 14;
 /// diverges, the sample that left the bounds.
 ///
 /// The loop is compiled twice, because compilers target the oldest processor of a family, where
-/// a fused multiply-add is a library call. Both give the same bits.
+/// a fused multiply-add is a library call. Both give the same bits. A loop of one number has nothing
+/// to gain from wider vectors.
 ///
 /// # Errors
 /// What `keep_going` gave.
@@ -94,13 +92,13 @@ fn run_loop<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<R
     let extraction = job.extraction;
     match (extraction.joint, extraction.controller, extraction.actuator, extraction.timing) {
         (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal, timing)
-            if timing == every_period_once(timing.control_period_s) =>
+            if pid.is_plain() && timing.is_every_period_once() =>
         {
             let extraction = Extraction {
                 joint: Joint::Lugre(joint),
-                controller: Controller::Pid(pid),
+                controller: Controller::Pid(Pid::plain(pid.gains)),
                 actuator: Actuator::Ideal,
-                timing: every_period_once(timing.control_period_s),
+                timing: Timing::every_period_once(timing.control_period_s),
                 ..extraction
             };
             run_kinds(&Job { extraction, ..*job }, keep_going)
@@ -109,23 +107,12 @@ fn run_loop<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<R
     }
 }
 
-/// One linearly implicit step in each control period, without delay.
-#[inline(always)]
-fn every_period_once(control_period_s: f64) -> Timing<f64> {
-    Timing {
-        control_period_s,
-        one_sample_delay: false,
-        integrator: Integrator::LinearlyImplicitMidpoint,
-        steps_per_period: 1,
-    }
-}
-
 #[inline(always)]
 fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Result<Run, E> {
     let mut progress = Progress { state: ExtractionState::at_rest(), metrics: Metrics::new() };
-    let disturbance = &job.extraction.disturbance;
-    let period_s = job.extraction.timing.control_period_s;
-    let mut draws = HeldDraws::new(job.seed, job.run, disturbance.hold_s, period_s);
+    let Extraction { disturbance, timing, .. } = job.extraction;
+    let mut draws =
+        HeldDraws::new(job.seed, [job.run], |_| disturbance, |_| timing.control_period_s);
     let mut trace = Trace::default();
     let (mut next_row, last_row) = match job.trace_every {
         0 => (u64::MAX, u64::MAX),
@@ -134,8 +121,8 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
     let per_check = (STEPS_PER_CHECK / u64::from(job.extraction.timing.steps_per_period)).max(1);
     let mut n = 0;
     while n < job.samples && progress.metrics.bounded == 1.0 {
-        let redraw = if disturbance.var == 0.0 { u64::MAX } else { draws.redraw_after(n) };
-        let draws = Draws { disturbance: draws.held() };
+        let redraw = draws.redraw_after(n);
+        let draws = Draws { disturbance: draws.held()[0] };
         let check = (n / per_check + 1) * per_check;
         let left = if n == next_row || n == last_row {
             let sample = progress.take_one(job, draws);
@@ -156,7 +143,6 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
             left
         };
         if let Some(sample) = left {
-            progress.end_at(&sample);
             if job.trace_every != 0 {
                 record(&mut trace, &sample);
             }
@@ -166,7 +152,7 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
         }
     }
     let Progress { state, metrics } = progress;
-    Ok(Run { outcome: metrics.outcome(&job.limits), metrics, state, trace })
+    Ok(Run { trace, ..Run::finished(metrics, state.plant.position_m, &job.limits) })
 }
 
 /// A run under way.
@@ -186,7 +172,7 @@ impl Progress {
         let mut last = None;
         for _ in 0..count {
             let sample = extraction.step(&mut state, draws);
-            metrics.update(&limits, &sample);
+            metrics.update(Groups::ALL, &limits, &sample);
             if metrics.bounded == 0.0 {
                 last = Some(sample);
                 break;
@@ -200,16 +186,8 @@ impl Progress {
     #[inline(always)]
     fn take_one(&mut self, job: &Job, draws: Draws<f64>) -> Sample<f64> {
         let sample = job.extraction.step(&mut self.state, draws);
-        self.metrics.update(&job.limits, &sample);
+        self.metrics.update(Groups::ALL, &job.limits, &sample);
         sample
-    }
-
-    /// Puts the plant back to where it was at a sample: what came after left the bounds.
-    fn end_at(&mut self, sample: &Sample<f64>) {
-        let plant = &mut self.state.plant;
-        plant.position_m = sample.position_m;
-        plant.velocity_m_per_s = sample.velocity_m_per_s;
-        plant.bristle_m = sample.bristle_m;
     }
 }
 
@@ -228,13 +206,50 @@ fn record(trace: &mut Trace, sample: &Sample<f64>) {
     }
 }
 
+impl Run {
+    /// A run without a trace that ended at position `end_m`.
+    pub(crate) fn finished(mut metrics: Metrics<f64>, end_m: f64, limits: &Limits<f64>) -> Self {
+        if !end_m.is_finite() {
+            metrics.bounded = 0.0; // the last step of all left the numbers
+        }
+        Self { outcome: metrics.outcome(limits), metrics, trace: Trace::default() }
+    }
+}
+
 impl Job {
+    /// Applies `f` to every number: those of the extraction, then those of the limits.
+    pub(crate) fn map_numbers<S>(
+        &self,
+        f: &mut impl FnMut(&'static str, f64) -> S,
+    ) -> (Extraction<S>, Limits<S>) {
+        (self.extraction.map(f), self.limits.map(f))
+    }
+
+    /// Every number, in an order that depends on the kinds only.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        self.map_numbers(&mut |_, value| numbers.push(value));
+        numbers
+    }
+
+    /// The same kinds with other numbers, each by its place in [`Job::numbers`].
+    #[must_use]
+    pub fn with_numbers(&self, number: impl Fn(usize) -> f64) -> Self {
+        let mut place = 0;
+        let (extraction, limits) = self.map_numbers(&mut |_, _| {
+            place += 1;
+            number(place - 1)
+        });
+        Self { extraction, limits, ..*self }
+    }
+
     /// The state after the last sample, as a row.
     fn end_of(&self, last: &Sample<f64>, state: &ExtractionState<f64>) -> Sample<f64> {
         let time_s = self.samples as f64 * last.period_s;
         Sample {
             time_s,
-            reference_m: self.extraction.reference.sample(time_s).0,
+            reference_m: self.extraction.reference.sample(time_s).position_m,
             position_m: state.plant.position_m,
             velocity_m_per_s: state.plant.velocity_m_per_s,
             bristle_m: state.plant.bristle_m,

@@ -5,7 +5,7 @@ use crate::real::Real;
 /// The random numbers of one step, drawn outside the core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draws<R> {
-    /// w, uniform on [-1, 1], held by the caller for the disturbance's hold time.
+    /// w, drawn by the disturbance's law and held by the caller for its hold time.
     pub disturbance: R,
 }
 
@@ -29,13 +29,32 @@ pub enum DisturbedQuantity {
     FrictionLevel,
 }
 
-/// R (or g) multiplied by 1 + var·w, w uniform on [-1, 1] and redrawn every hold time.
+/// How w is drawn. The core is given w; the law is kept here, beside what w multiplies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
+pub enum DrawLaw<R> {
+    /// Uniform on [-1, 1], each draw independent.
+    Uniform,
+    /// Normal with variance 1, restricted to |w| ≤ 4, each draw independent.
+    Gaussian,
+    /// Normal noise with variance 1 behind a first-order low-pass, limited to |w| ≤ 4.
+    BandLimited {
+        /// Corner frequency of the low-pass in Hz.
+        bandwidth_hz: R,
+    },
+}
+
+/// R (or g) multiplied by 1 + var·w, w redrawn every hold time.
 ///
 /// The paper states the factor 1 ± var but no distribution and no rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
-pub struct UniformDisturbance<R> {
-    /// Relative half width, 0 ≤ var < 1.
+pub struct Disturbance<R> {
+    /// How w is drawn.
+    pub law: DrawLaw<R>,
+    /// Relative size: half width of a uniform law, 0 ≤ var < 1; standard deviation of the others,
+    /// 0 ≤ var < 1/4.
     pub var: R,
     /// Time between redraws in s.
     pub hold_s: R,
@@ -43,10 +62,17 @@ pub struct UniformDisturbance<R> {
     pub acts_on: DisturbedQuantity,
 }
 
-impl<R: Real> UniformDisturbance<R> {
+impl<R: Real> Disturbance<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> UniformDisturbance<S> {
-        UniformDisturbance {
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Disturbance<S> {
+        Disturbance {
+            law: match self.law {
+                DrawLaw::Uniform => DrawLaw::Uniform,
+                DrawLaw::Gaussian => DrawLaw::Gaussian,
+                DrawLaw::BandLimited { bandwidth_hz } => {
+                    DrawLaw::BandLimited { bandwidth_hz: f("bandwidth_hz", bandwidth_hz) }
+                }
+            },
             var: f("var", self.var),
             hold_s: f("hold_s", self.hold_s),
             acts_on: self.acts_on,

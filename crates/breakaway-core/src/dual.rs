@@ -102,6 +102,10 @@ impl<R: Real, const P: usize> Real for Dual<R, P> {
         Self { value: R::constant(value), derivative: [R::zero(); P] }
     }
     #[inline(always)]
+    fn known(holds: bool) -> R::Mask {
+        R::known(holds)
+    }
+    #[inline(always)]
     fn lt(self, other: Self) -> R::Mask {
         self.value.lt(other.value)
     }

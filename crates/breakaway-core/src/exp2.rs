@@ -7,26 +7,30 @@
 //! The polynomials are Chebyshev fits of degree 10 (`f64`, relative error 2.2e-16) and 6 (`f32`,
 //! 2e-9), summed by Estrin's scheme for the same reason.
 
-use crate::fused::{fma_f32, fma_f64};
+use crate::fused::fma_f32;
+use crate::real::Real;
 
+/// [`Real::exp2_parts`] for a number, or several side by side, of double precision. What differs
+/// between them is `shift`: the bits of the number moved left by 52.
 #[inline(always)]
-pub(crate) fn exp2_f64(y: f64) -> (f64, f64) {
+pub fn exp2_parts_in_double<R: Real>(y: R, shift: impl Fn(R) -> R) -> (R, R) {
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²
-    let n = (y + ROUND) - ROUND;
+    let c = |i: usize| R::constant(C64[i]);
+    let n = (y + R::constant(ROUND)) - R::constant(ROUND);
     let f = y - n;
-    let (f2, f4) = (f * f, (f * f) * (f * f));
-    let p01 = fma_f64(C64[0], f, 1.0);
-    let p23 = fma_f64(C64[2], f, C64[1]);
-    let p45 = fma_f64(C64[4], f, C64[3]);
-    let p67 = fma_f64(C64[6], f, C64[5]);
-    let p89 = fma_f64(C64[8], f, C64[7]);
-    let p0123 = fma_f64(p23, f2, p01);
-    let p4567 = fma_f64(p67, f2, p45);
-    let p8910 = fma_f64(C64[9], f2, p89);
-    let p = fma_f64(fma_f64(p8910, f4, p4567), f4, p0123);
-    let above = if n < -1022.0 { -1022.0 } else { n };
-    let limited = if above > 1023.0 { 1023.0 } else { above };
-    (p, f64::from_bits((limited + (ROUND + 1023.0)).to_bits() << 52))
+    let f2 = f * f;
+    let f4 = f2 * f2;
+    let p01 = c(0).mul_add(f, R::one());
+    let p23 = c(2).mul_add(f, c(1));
+    let p45 = c(4).mul_add(f, c(3));
+    let p67 = c(6).mul_add(f, c(5));
+    let p89 = c(8).mul_add(f, c(7));
+    let p0123 = p23.mul_add(f2, p01);
+    let p4567 = p67.mul_add(f2, p45);
+    let p8910 = c(9).mul_add(f2, p89);
+    let p = p8910.mul_add(f4, p4567).mul_add(f4, p0123);
+    let limited = n.clamp(R::constant(-1022.0), R::constant(1023.0));
+    (p, shift(limited + R::constant(ROUND + 1023.0)))
 }
 
 // The first coefficient is fitted too, and is not exactly ln 2.
@@ -67,7 +71,7 @@ const C32: [f32; 6] = [0.6931472, 0.2402265, 0.05550327, 0.009618057, 0.00134004
 mod tests {
     extern crate std;
     fn exp2_f64(y: f64) -> f64 {
-        let (fraction, power) = super::exp2_f64(y);
+        let (fraction, power) = crate::Real::exp2_parts(y);
         fraction * power
     }
 

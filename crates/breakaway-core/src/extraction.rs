@@ -2,12 +2,12 @@
 
 use crate::actuator::Actuator;
 use crate::control::{Controller, ControllerState, Measurement};
-use crate::disturbance::{Draws, UniformDisturbance};
+use crate::disturbance::{Disturbance, Draws, Factors};
 use crate::joint::Joint;
 use crate::parameters::parameters;
 use crate::plant::{Integrator, Plant, PlantState};
 use crate::real::Real;
-use crate::reference::Reference;
+use crate::reference::{Reference, Setpoint};
 
 parameters! {
     /// The part that is extracted.
@@ -29,6 +29,25 @@ pub struct Timing<R> {
     pub integrator: Integrator,
     /// Integration steps in a control period, at least 1.
     pub steps_per_period: u32,
+}
+
+impl<R> Timing<R> {
+    /// One linearly implicit step in each control period, without delay.
+    pub fn every_period_once(control_period_s: R) -> Self {
+        Self {
+            control_period_s,
+            one_sample_delay: false,
+            integrator: Integrator::LinearlyImplicitMidpoint,
+            steps_per_period: 1,
+        }
+    }
+
+    /// Whether this is [`Timing::every_period_once`].
+    pub fn is_every_period_once(&self) -> bool {
+        !self.one_sample_delay
+            && self.integrator == Integrator::LinearlyImplicitMidpoint
+            && self.steps_per_period == 1
+    }
 }
 
 /// Everything that defines an extraction, but for random draws and its duration.
@@ -54,7 +73,7 @@ pub struct Extraction<R> {
     /// Where the part should be.
     pub reference: Reference<R>,
     /// What is not known of the joint.
-    pub disturbance: UniformDisturbance<R>,
+    pub disturbance: Disturbance<R>,
     /// What pushes.
     pub actuator: Actuator<R>,
     /// What decides how hard.
@@ -132,6 +151,8 @@ parameters! {
         pub next_position_m,
         /// v one period later, m/s.
         pub next_velocity_m_per_s,
+        /// z one period later, m.
+        pub next_bristle_m,
     }
 }
 
@@ -157,13 +178,26 @@ impl<R: Real> Extraction<R> {
     /// One control period.
     #[inline(always)]
     pub fn step(&self, state: &mut ExtractionState<R>, draws: Draws<R>) -> Sample<R> {
+        let setpoint = self.reference.sample(state.sampling.samples * self.timing.control_period_s);
+        state.sampling.samples = state.sampling.samples + R::one();
+        self.follow(state, &setpoint, &self.disturbance.factors(draws))
+    }
+
+    /// One control period towards a setpoint that the caller has sampled from the reference, once
+    /// for many runs that share it, and with factors that the caller has computed when they were
+    /// drawn. The clock of the state stands still.
+    #[inline(always)]
+    pub fn follow(
+        &self,
+        state: &mut ExtractionState<R>,
+        setpoint: &Setpoint<R>,
+        factors: &Factors<R>,
+    ) -> Sample<R> {
         let period_s = self.timing.control_period_s;
-        let time_s = state.sampling.samples * period_s;
-        let (reference_m, reference_rate_m_per_s) = self.reference.sample(time_s);
         let before = state.plant;
         let measured = Measurement {
-            reference_m,
-            reference_rate_m_per_s,
+            reference_m: setpoint.position_m,
+            reference_rate_m_per_s: setpoint.rate_m_per_s,
             position_m: before.position_m,
             velocity_m_per_s: before.velocity_m_per_s,
             period_s,
@@ -172,13 +206,12 @@ impl<R: Real> Extraction<R> {
         let decided = self.controller.step(&mut state.controller, &measured);
         let command_n = self.delay(&mut state.sampling, decided);
         let applied_force_n = self.actuator.force(command_n);
-        let joint_force_n = self.move_plant(&mut state.plant, applied_force_n, draws);
-        state.sampling.samples = state.sampling.samples + R::one();
+        let joint_force_n = self.move_plant(&mut state.plant, applied_force_n, factors);
         Sample {
-            time_s,
+            time_s: setpoint.time_s,
             period_s,
-            reference_m,
-            reference_rate_m_per_s,
+            reference_m: setpoint.position_m,
+            reference_rate_m_per_s: setpoint.rate_m_per_s,
             position_m: before.position_m,
             velocity_m_per_s: before.velocity_m_per_s,
             bristle_m: before.bristle_m,
@@ -187,6 +220,7 @@ impl<R: Real> Extraction<R> {
             joint_force_n,
             next_position_m: state.plant.position_m,
             next_velocity_m_per_s: state.plant.velocity_m_per_s,
+            next_bristle_m: state.plant.bristle_m,
         }
     }
 
@@ -200,13 +234,9 @@ impl<R: Real> Extraction<R> {
 
     /// Integrates over one period with a constant force; gives the mean joint force in N.
     #[inline(always)]
-    fn move_plant(&self, state: &mut PlantState<R>, force_n: R, draws: Draws<R>) -> R {
-        let plant = Plant {
-            joint: &self.joint,
-            mass_kg: self.part.mass_kg,
-            force_n,
-            factors: self.disturbance.factors(draws),
-        };
+    fn move_plant(&self, state: &mut PlantState<R>, force_n: R, factors: &Factors<R>) -> R {
+        let plant =
+            Plant { joint: &self.joint, mass_kg: self.part.mass_kg, force_n, factors: *factors };
         let Timing { integrator, steps_per_period: steps, control_period_s, .. } = self.timing;
         if steps == 1 {
             return plant.step(integrator, state, control_period_s);

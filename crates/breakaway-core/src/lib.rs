@@ -28,7 +28,7 @@
 #[cfg(feature = "std")]
 extern crate std;
 
-mod exp2;
+pub mod exp2;
 mod fused;
 mod parameters;
 

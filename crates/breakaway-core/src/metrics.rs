@@ -38,6 +38,73 @@ pub enum Outcome {
     LimitExceeded,
 }
 
+/// Which metrics are counted. Each group is independent of the others; what is not counted stays as
+/// it was at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Groups {
+    /// `time_s`.
+    pub time: bool,
+    /// `iae_m_s`.
+    pub iae: bool,
+    /// `ise_m2_s`, `itae_m_s2`.
+    pub error: bool,
+    /// `largest_error_m`, `peak_force_n`.
+    pub extremes: bool,
+    /// `impulse_n_s`, `force_square_n2_s`, `work_j`, `joint_work_j`, `saturated_s`.
+    pub force: bool,
+    /// `contact_s`, `impacts`, `largest_step_m`, `largest_impact_work_j`.
+    pub impacts: bool,
+    /// `largest_jump_m`.
+    pub jump: bool,
+    /// `breakaway_s`, `release_s`, `release_velocity_m_per_s`.
+    pub events: bool,
+    /// `end_position_m`, `end_bristle_m`.
+    pub end: bool,
+}
+
+impl Groups {
+    /// Nothing but whether the run stays within its bounds.
+    pub const NONE: Self = Self {
+        time: false,
+        iae: false,
+        error: false,
+        extremes: false,
+        force: false,
+        impacts: false,
+        jump: false,
+        events: false,
+        end: false,
+    };
+    /// Everything.
+    pub const ALL: Self = Self {
+        time: true,
+        iae: true,
+        error: true,
+        extremes: true,
+        force: true,
+        impacts: true,
+        jump: true,
+        events: true,
+        end: true,
+    };
+
+    /// The groups of either.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self {
+            time: self.time | other.time,
+            iae: self.iae | other.iae,
+            error: self.error | other.error,
+            extremes: self.extremes | other.extremes,
+            force: self.force | other.force,
+            impacts: self.impacts | other.impacts,
+            jump: self.jump | other.jump,
+            events: self.events | other.events,
+            end: self.end | other.end,
+        }
+    }
+}
+
 parameters! {
     /// Running sums and extremes. Times that have not come yet are infinite.
     ///
@@ -92,6 +159,10 @@ parameters! {
         pub release_s,
         /// v when the part came free, m/s.
         pub release_velocity_m_per_s,
+        /// x at the end, or when the run left its bounds, m.
+        pub end_position_m,
+        /// z then, m.
+        pub end_bristle_m,
     }
 }
 
@@ -125,50 +196,115 @@ impl<R: Real> Metrics<R> {
             breakaway_s: not_yet,
             release_s: not_yet,
             release_velocity_m_per_s: zero,
+            end_position_m: zero,
+            end_bristle_m: zero,
         }
     }
 
-    /// Counts a sample, unless the run has left its bounds.
+    /// Counts a sample for the groups that are wanted, unless the run has left its bounds.
     ///
     /// The sample that leaves them still counts for the largest error and force, so that these tell
     /// why the run diverged; for nothing else. Out of bounds everything that is summed becomes zero,
-    /// here and once: cheaper than keeping every sum from a change.
+    /// here and once: cheaper than keeping every sum from a change. Groups do not touch each other:
+    /// what one counts has the same bits whether others are wanted or not.
     #[inline(always)]
-    pub fn update(&mut self, limits: &Limits<R>, sample: &Sample<R>) {
+    pub fn update(&mut self, wanted: Groups, limits: &Limits<R>, sample: &Sample<R>) {
+        let was_bounded = self.bounded.is_set();
         let error = (sample.reference_m - sample.position_m).abs();
         let force = sample.applied_force_n.abs();
-        let within = error.le(limits.diverged_error_m)
-            & force.le(limits.diverged_force_n)
-            & sample.next_position_m.abs().lt(R::constant(f64::INFINITY));
-        let was_bounded = self.bounded.is_set();
+        let within = error.le(limits.diverged_error_m) & force.le(limits.diverged_force_n);
         let bounded = was_bounded & within;
         self.bounded = R::flag(bounded);
-        // The order matters: what is not a number is passed over.
-        let seen = |value: R, largest: R| R::select(was_bounded, value.max(largest), largest);
-        self.largest_error_m = seen(error, self.largest_error_m);
-        self.peak_force_n = seen(force, self.peak_force_n);
+        self.count(wanted, limits, sample, was_bounded, bounded);
+    }
 
-        let counted = |value: R| R::select(bounded, value, R::zero());
-        let period_s = counted(sample.period_s);
-        let force = counted(sample.applied_force_n);
-        let travel = counted(sample.next_position_m - sample.position_m);
-        self.count_error(sample.time_s, period_s, counted(error));
-        self.count_force(period_s, force, travel, counted(sample.joint_force_n));
-        let (asked, given) = (sample.command_n, sample.applied_force_n);
-        let missed = asked.lt(given) | given.lt(asked);
-        self.saturated_s = self.saturated_s + R::select(missed, period_s, R::zero());
-        self.count_impacts(period_s, force, travel);
-        let in_guide = sample.position_m.lt(limits.release_position_m);
-        let slipped = R::select(in_guide, travel, R::zero());
-        self.count_jump(period_s, slipped, sample.reference_rate_m_per_s);
-        self.note_times(limits, sample, bounded);
+    /// Counts a sample as [`Metrics::update`] does for one that is within its bounds, without looking.
+    ///
+    /// Faster; [`Metrics::stayed_within`] tells afterwards whether that was right. Extremes are
+    /// counted for it, wanted or not.
+    #[inline(always)]
+    pub fn update_unseen(&mut self, wanted: Groups, limits: &Limits<R>, sample: &Sample<R>) {
+        let yes = R::known(true);
+        let wanted = Groups { extremes: true, ..wanted };
+        self.count(wanted, limits, sample, yes, yes);
+    }
+
+    /// Whether no error and no force so far was out of bounds. Numbers that are none are passed
+    /// over: whoever asks has to look at the state too, where they stay.
+    pub fn stayed_within(&self, limits: &Limits<R>) -> R::Mask {
+        self.largest_error_m.le(limits.diverged_error_m)
+            & self.peak_force_n.le(limits.diverged_force_n)
+    }
+
+    #[inline(always)]
+    fn count(
+        &mut self,
+        wanted: Groups,
+        limits: &Limits<R>,
+        sample: &Sample<R>,
+        was_bounded: R::Mask,
+        bounded: R::Mask,
+    ) {
+        let error = (sample.reference_m - sample.position_m).abs();
+        let period_s = where_it_holds(bounded, sample.period_s);
+        if wanted.time {
+            self.time_s = self.time_s + period_s;
+        }
+        if wanted.iae {
+            self.iae_m_s = where_it_holds(bounded, error).mul_add(sample.period_s, self.iae_m_s);
+        }
+        if wanted.error {
+            self.count_error(sample.time_s, period_s, where_it_holds(bounded, error));
+        }
+        if wanted.extremes {
+            let force = sample.applied_force_n.abs();
+            self.largest_error_m = larger_where(was_bounded, error, self.largest_error_m);
+            self.peak_force_n = larger_where(was_bounded, force, self.peak_force_n);
+        }
+        if wanted.force | wanted.impacts | wanted.jump {
+            self.count_motion(wanted, limits, sample, period_s, bounded);
+        }
+        if wanted.events {
+            self.note_times(limits, sample, bounded);
+        }
+        if wanted.end {
+            self.end_position_m = R::select(bounded, sample.next_position_m, self.end_position_m);
+            self.end_bristle_m = R::select(bounded, sample.next_bristle_m, self.end_bristle_m);
+        }
+    }
+
+    #[inline(always)]
+    fn count_motion(
+        &mut self,
+        wanted: Groups,
+        limits: &Limits<R>,
+        sample: &Sample<R>,
+        period_s: R,
+        bounded: R::Mask,
+    ) {
+        let moved = bounded & sample.next_position_m.abs().lt(R::constant(f64::INFINITY));
+        let travel = where_it_holds(moved, sample.next_position_m - sample.position_m);
+        let force = where_it_holds(bounded, sample.applied_force_n);
+        if wanted.force {
+            let joint_force = where_it_holds(bounded, sample.joint_force_n);
+            self.count_force(period_s, force, travel, joint_force);
+            let (asked, given) = (sample.command_n, sample.applied_force_n);
+            let missed = asked.lt(given) | given.lt(asked);
+            self.saturated_s = self.saturated_s + where_it_holds(missed, period_s);
+        }
+        if wanted.impacts {
+            self.count_impacts(period_s, force, travel);
+        }
+        if wanted.jump {
+            let in_guide = sample.position_m.lt(limits.release_position_m);
+            let slipped = where_it_holds(in_guide, travel);
+            self.count_jump(period_s, slipped, sample.reference_rate_m_per_s);
+        }
     }
 
     #[inline(always)]
     fn count_error(&mut self, time_s: R, period_s: R, error: R) {
         let area = error * period_s;
-        self.time_s = self.time_s + period_s;
-        self.iae_m_s = self.iae_m_s + area;
         self.ise_m2_s = error.mul_add(area, self.ise_m2_s);
         self.itae_m_s2 = time_s.mul_add(area, self.itae_m_s2);
     }
@@ -222,6 +358,19 @@ impl<R: Real> Metrics<R> {
         );
         self.release_s = R::select(bounded, since_s, self.release_s);
     }
+}
+
+// Functions and not closures, because these are not inlined into the instruction set of a batch.
+
+#[inline(always)]
+fn where_it_holds<R: Real>(mask: R::Mask, value: R) -> R {
+    R::select(mask, value, R::zero())
+}
+
+/// The order matters: what is not a number is passed over.
+#[inline(always)]
+fn larger_where<R: Real>(mask: R::Mask, value: R, largest: R) -> R {
+    R::select(mask, value.max(largest), largest)
 }
 
 impl Metrics<f64> {

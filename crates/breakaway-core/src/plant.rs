@@ -74,13 +74,10 @@ impl<R: Real> Plant<'_, R> {
             self.factors.friction_level,
         );
         (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
-        let mean_force = match integrator {
+        match integrator {
             Integrator::LinearlyImplicitMidpoint => self.linearly_implicit_midpoint(state, h),
             Integrator::Rk4 => self.rk4(state, h),
-        };
-        let engaged = self.engaged(state.position_m);
-        state.bristle_m = R::select(engaged, state.bristle_m, R::zero());
-        mean_force
+        }
     }
 
     #[inline(always)]
@@ -88,33 +85,30 @@ impl<R: Real> Plant<'_, R> {
         x.lt(self.joint.engagement_length_m())
     }
 
-    /// The factor on the joint force at position `x`: the disturbance, or zero once released.
-    #[inline(always)]
-    fn force_factor(&self, x: R) -> R {
-        R::select(self.engaged(x), self.factors.joint_force, R::zero())
-    }
-
     /// The bristle equation is linear in (v, z) once its coefficients are frozen at a predicted
     /// midpoint velocity; the midpoint rule then has the closed form below. With k = h/2,
     /// w = v + k F/m and q = k n/m (n the factor on the joint force):
     ///
     /// ```text
-    /// v_m = w − q (k_e z_m + c ż_m + σ v_m),   z_m = z + k ż_m,   ż_m = α v_m − (A/g) z_m
-    /// den = g [1 + q σ + q α (c + k k_e)] + k A (1 + q σ)
-    /// v_m = [g (w − q k_e z) + A (k w + q c z)] / den
-    /// z_m = g [(1 + q (σ + α c)) z + k α w] / den
+    /// v_m = w − q R_m,   R_m = k_e z_m + c ż_m + σ v_m,   z_m = z + k ż_m,   ż_m = α v_m − (A/g) z_m
+    /// den = g [1 + q σ + q k α (k_e + c/k)] + k A (1 + q σ)
+    /// v_m = [g (w − q k_e z) + k A (w + q c/k z)] / den
+    /// R_m = (w − v_m) / q
+    /// z_m = (R_m + c/k z − σ v_m) / (k_e + c/k)
     /// ```
     ///
     /// Multiplying through by g leaves one division; collecting powers of g leaves the shortest
-    /// chain after the exponential in g, which is what a single run waits for. Derivation and
-    /// error constants: `docs/derivations/linearly_implicit_midpoint.md`.
+    /// chain after the exponential in g, which is what a single run waits for, and coefficients
+    /// that change at a redraw only. R_m = (w − v_m) / q is the joint force of the first line. A
+    /// part whose middle is beyond the guide moves by w alone. Derivation and error constants:
+    /// `docs/derivations/linearly_implicit_midpoint.md`.
     #[inline(always)]
     fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, h: R) -> R {
         let (v, z) = (state.velocity_m_per_s, state.bristle_m);
         let k = R::constant(0.5) * h;
         let k_over_m = k / self.mass_kg;
         let x_mid = k.mul_add(v, state.position_m);
-        let n = self.force_factor(x_mid);
+        let n = self.factors.joint_force;
         let q = k_over_m * n;
         let w = k_over_m.mul_add(self.force_n, v);
         let held_back = (-q).mul_add(state.joint_force_n, v);
@@ -122,25 +116,28 @@ impl<R: Real> Plant<'_, R> {
         let level = self.factors.friction_level;
         let b = self.joint.freeze(&state.joint(), x_mid, v_predicted, level);
 
-        let (g, a) = (b.friction_level_n, b.relaxation);
+        let g = b.friction_level_n;
         let (k_e, c) = (b.stiffness_n_per_m, b.damping_n_s_per_m);
         let viscous = q.mul_add(b.viscous_n_s_per_m, R::one());
-        let q_stretch = q * b.stretch;
-        let per_level = q_stretch.mul_add(k.mul_add(k_e, c), viscous);
-        let two_over_den = R::constant(2.0) / g.mul_add(per_level, a * (k * viscous));
-        let slipping = a * k.mul_add(w, q * c * z);
-        let driven = g.mul_add((q * k_e).mul_add(-z, w), slipping);
-        let stretched = q_stretch.mul_add(c, viscous).mul_add(z, k * b.stretch * w);
-        let two_z = g * stretched * two_over_den;
+        let c_over_k = c / k;
+        let per_level = (q * k * b.stretch).mul_add(k_e + c_over_k, viscous);
+        let slip = k * b.relaxation_n_per_m * b.speed_m_per_s; // k A
+        let two_over_den = R::constant(2.0) / g.mul_add(per_level, slip * viscous);
+        let driven = g.mul_add((q * k_e).mul_add(-z, w), slip * (q * c_over_k).mul_add(z, w));
 
-        // R = k_e z_m + c (z_m − z)/k + σ v_m at the middle of the step.
-        let half = R::constant(0.5);
-        let c_over_k = c * (R::one() / k);
-        let passed = (half * b.viscous_n_s_per_m * driven).mul_add(two_over_den, -(c_over_k * z));
-        state.joint_force_n = (half * (k_e + c_over_k)).mul_add(two_z, passed);
-        state.position_m = (k * driven).mul_add(two_over_den, state.position_m);
-        state.velocity_m_per_s = driven.mul_add(two_over_den, -v);
-        state.bristle_m = two_z - z;
+        let engaged = self.engaged(x_mid);
+        let two_w = w + w;
+        let two_v = R::select(engaged, driven * two_over_den, two_w);
+        let lost = two_w - two_v; // 2 q R_m
+        let per_force = R::one() / (k_e + c_over_k);
+        let damped = (per_force * c_over_k * R::constant(2.0)).mul_add(z, -z);
+        let passed = (-(per_force * b.viscous_n_s_per_m)).mul_add(two_v, damped);
+        let per_lost = R::constant(0.5) / k_over_m * (R::one() / n); // 1 / (2 q)
+        let stretched = (per_force * R::constant(2.0) * per_lost).mul_add(lost, passed);
+        state.joint_force_n = lost * per_lost;
+        state.position_m = k.mul_add(two_v, state.position_m);
+        state.velocity_m_per_s = two_v - v;
+        state.bristle_m = R::select(engaged, stretched, R::zero());
         n * state.joint_force_n
     }
 
@@ -149,7 +146,10 @@ impl<R: Real> Plant<'_, R> {
     fn rates(&self, state: &JointState<R>, x: R, v: R, z: R) -> ([R; 3], R) {
         let b: Bristle<R> = self.joint.freeze(state, x, v, self.factors.friction_level);
         let z_rate = b.rate(v, z);
-        let joint_force = self.force_factor(x) * b.force(v, z, z_rate);
+        let force = self.factors.joint_force * b.force(v, z, z_rate);
+        let engaged = self.engaged(x);
+        let joint_force = R::select(engaged, force, R::zero());
+        let z_rate = R::select(engaged, z_rate, R::zero());
         ([v, (self.force_n - joint_force) / self.mass_kg, z_rate], joint_force)
     }
 
@@ -170,6 +170,7 @@ impl<R: Real> Plant<'_, R> {
             |a: R, b: R, c: R, d: R| (a + d + R::constant(2.0) * (b + c)) * R::constant(1.0 / 6.0);
         let [x, v, z]: [R; 3] =
             core::array::from_fn(|i| start[i] + h * mean(k1[i], k2[i], k3[i], k4[i]));
+        let z = R::select(self.engaged(x), z, R::zero());
         (state.position_m, state.velocity_m_per_s, state.bristle_m) = (x, v, z);
         let joint_force = mean(r1, r2, r3, r4);
         state.joint_force_n = joint_force / self.factors.joint_force;
@@ -194,7 +195,7 @@ pub fn impose_motion<R: Real>(joint: &Joint<R>, state: &mut PlantState<R>, v: R,
     let k = R::constant(0.5) * h;
     let x_mid = k.mul_add(v, state.position_m);
     let b = joint.freeze(&settled, x_mid, v, one);
-    let relaxed = one + k * b.relaxation / b.friction_level_n;
+    let relaxed = one + k * b.relaxation() / b.friction_level_n;
     let z_mid = (k * b.stretch).mul_add(v, state.bristle_m) / relaxed;
     let engaged = x_mid.lt(joint.engagement_length_m());
     let force = R::select(engaged, b.force(v, z_mid, b.rate(v, z_mid)), zero);

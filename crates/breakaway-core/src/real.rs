@@ -50,6 +50,12 @@ pub trait Real:
     /// `yes` where `mask` holds, `no` elsewhere. Both are computed; the other one is dropped.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
+    /// A condition that is known beforehand, so that compilers can drop what it rules out.
+    #[inline(always)]
+    fn known(holds: bool) -> Self::Mask {
+        Self::zero().lt(Self::constant(f64::from(u8::from(holds))))
+    }
+
     /// Absolute value.
     fn abs(self) -> Self;
 
@@ -129,7 +135,7 @@ pub trait Real:
 }
 
 macro_rules! impl_real {
-    ($float:ty, $exp2:path, $fma:path) => {
+    ($float:ty, $exp2:expr, $fma:path) => {
         impl Real for $float {
             type Mask = bool;
 
@@ -150,6 +156,10 @@ macro_rules! impl_real {
                 if mask { yes } else { no }
             }
             #[inline(always)]
+            fn known(holds: bool) -> bool {
+                holds
+            }
+            #[inline(always)]
             fn abs(self) -> Self {
                 <$float>::abs(self)
             }
@@ -165,7 +175,11 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f64, exp2::exp2_f64, fused::fma_f64);
+impl_real!(
+    f64,
+    |y| exp2::exp2_parts_in_double(y, |n: f64| f64::from_bits(n.to_bits() << 52)),
+    fused::fma_f64
+);
 impl_real!(f32, exp2::exp2_f32, fused::fma_f32);
 
 #[cfg(test)]

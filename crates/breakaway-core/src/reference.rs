@@ -39,15 +39,27 @@ parameters! {
     }
 }
 
+parameters! {
+    /// What a reference asks for at a moment.
+    pub struct Setpoint {
+        /// t in s.
+        pub time_s,
+        /// r in m.
+        pub position_m,
+        /// dr/dt in m/s.
+        pub rate_m_per_s,
+    }
+}
+
 /// A reference r(t) that starts at the seat, r = 0.
 ///
 /// # Example
 /// ```
 /// use breakaway_core::reference::{Motion, Reference};
 /// let r = Reference::<f64>::MinimumJerk(Motion { distance_m: 0.1, start_s: 0.0, duration_s: 0.5 });
-/// let (position, rate) = r.sample(0.25);
-/// assert!((position - 0.05).abs() < 1e-15);
-/// assert!((rate - 1.875 * 0.1 / 0.5).abs() < 1e-15);
+/// let setpoint = r.sample(0.25);
+/// assert!((setpoint.position_m - 0.05).abs() < 1e-15);
+/// assert!((setpoint.rate_m_per_s - 1.875 * 0.1 / 0.5).abs() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
@@ -74,15 +86,16 @@ impl<R: Real> Reference<R> {
         }
     }
 
-    /// Position in m and rate in m/s at time `t` in s.
+    /// What is asked for at time `t` in s.
     #[inline(always)]
-    pub fn sample(&self, t: R) -> (R, R) {
-        match self {
+    pub fn sample(&self, t: R) -> Setpoint<R> {
+        let (position_m, rate_m_per_s) = match self {
             Self::Step(p) => (R::select(t.lt(p.start_s), R::zero(), p.distance_m), R::zero()),
             Self::Ramp(p) => ramp(p, t),
             Self::MinimumJerk(p) => minimum_jerk(p, t),
             Self::TrapezoidalVelocity(p) => trapezoidal_velocity(p, t),
-        }
+        };
+        Setpoint { time_s: t, position_m, rate_m_per_s }
     }
 }
 
@@ -142,12 +155,14 @@ mod tests {
     #[test]
     fn motions_start_at_the_seat_and_end_at_the_distance() {
         for reference in all() {
-            assert_eq!(reference.sample(0.05), (0.0, 0.0));
-            let (position, rate) = reference.sample(0.6);
-            assert!((position - 0.08).abs() < 1e-15 && rate == 0.0, "{reference:?}");
+            let before = reference.sample(0.05);
+            assert_eq!((before.position_m, before.rate_m_per_s), (0.0, 0.0));
+            let after = reference.sample(0.6);
+            let gap = (after.position_m - 0.08).abs();
+            assert!(gap < 1e-15 && after.rate_m_per_s == 0.0, "{reference:?}");
         }
         let step = Reference::Step(Step { distance_m: 0.08, start_s: 0.1 });
-        assert_eq!((step.sample(0.099_f64).0, step.sample(0.1).0), (0.0, 0.08));
+        assert_eq!((step.sample(0.099_f64).position_m, step.sample(0.1).position_m), (0.0, 0.08));
     }
 
     #[test]
@@ -155,8 +170,12 @@ mod tests {
         for reference in all() {
             for i in 1..60 {
                 let (t, h) = (f64::from(i) * 0.01 + 0.003, 1e-6);
-                let slope = (reference.sample(t + h).0 - reference.sample(t - h).0) / (2.0 * h);
-                assert!((reference.sample(t).1 - slope).abs() < 1e-8, "{reference:?} at {t}");
+                let at = |t| reference.sample(t).position_m;
+                let slope = (at(t + h) - at(t - h)) / (2.0 * h);
+                assert!(
+                    (reference.sample(t).rate_m_per_s - slope).abs() < 1e-8,
+                    "{reference:?} at {t}"
+                );
             }
         }
     }
@@ -164,7 +183,7 @@ mod tests {
     #[test]
     fn the_trapezoid_keeps_its_velocity_and_acceleration() {
         let reference = all()[2];
-        let rates = |t: f64| reference.sample(t).1;
+        let rates = |t: f64| reference.sample(t).rate_m_per_s;
         assert!((rates(0.1 + 0.0625) - 0.125).abs() < 1e-15); // halfway up: a t
         assert!((rates(0.3) - 0.25).abs() < 1e-15); // cruise
     }

@@ -2,7 +2,7 @@
 
 use crate::actuator::Actuator;
 use crate::control::{AntiWindup, Controller, DerivativeOf, Gains, Pid, VelocityFrom};
-use crate::disturbance::{DisturbedQuantity, UniformDisturbance};
+use crate::disturbance::{Disturbance, DisturbedQuantity, DrawLaw};
 use crate::extraction::{Extraction, Part, Timing};
 use crate::joint::{Joint, Lugre};
 use crate::metrics::Limits;
@@ -42,7 +42,8 @@ pub fn paper_as_computed() -> Extraction<f64> {
             start_s: 0.0,
             duration_s: 0.5,
         }),
-        disturbance: UniformDisturbance {
+        disturbance: Disturbance {
+            law: DrawLaw::Uniform,
             var: 0.0,
             hold_s: 1e-4,
             acts_on: DisturbedQuantity::JointForce,
@@ -56,7 +57,7 @@ pub fn paper_as_computed() -> Extraction<f64> {
             },
             derivative_of: DerivativeOf::Error,
             velocity_from: VelocityFrom::Sensor,
-            derivative_filter_s: 0.0,
+            derivative_filter_s: None,
             anti_windup: AntiWindup::Off,
             tracking_time_s: 1e-3,
         }),

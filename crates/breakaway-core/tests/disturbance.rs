@@ -3,7 +3,7 @@
 mod support;
 
 use breakaway_core::Draws;
-use breakaway_core::disturbance::{DisturbedQuantity, UniformDisturbance};
+use breakaway_core::disturbance::{Disturbance, DisturbedQuantity, DrawLaw};
 use breakaway_core::joint::Joint;
 use breakaway_core::test_models::paper_joint;
 use support::Rig;
@@ -11,7 +11,7 @@ use support::Rig;
 /// Travel in m, and when it came free in s, of a part under a constant push in N for 4 s, with
 /// var = 0.3 redrawn every millisecond.
 fn push(acts_on: DisturbedQuantity, force_n: f64) -> (f64, Option<f64>) {
-    let disturbance = UniformDisturbance { var: 0.3, hold_s: 1e-3, acts_on };
+    let disturbance = Disturbance { law: DrawLaw::Uniform, var: 0.3, hold_s: 1e-3, acts_on };
     let mut rig = Rig::at(Joint::Lugre(paper_joint()), 0.0);
     let (mut random, mut draw) = (1, 0.0);
     for n in 0..400_000 {

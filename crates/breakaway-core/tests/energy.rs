@@ -2,6 +2,7 @@
 //! motion. The midpoint rule keeps this balance exactly, whatever its error in the motion, since
 //! m (v₁ − v₀) v_m = (F − R) v_m h and v_m is the mean of v₀ and v₁.
 
+use breakaway_core::metrics::Groups;
 use breakaway_core::test_models::{paper_as_computed, paper_limits};
 use breakaway_core::{Draws, ExtractionState, Metrics};
 
@@ -14,7 +15,7 @@ fn work_is_joint_work_and_kinetic_energy() {
         for n in 0..50_000 {
             let disturbance = f64::from(n / 10 * 7 % 11) / 5.5 - 1.0;
             let sample = extraction.step(&mut state, Draws { disturbance });
-            metrics.update(&paper_limits(), &sample);
+            metrics.update(Groups::ALL, &paper_limits(), &sample);
             let v = state.plant.velocity_m_per_s;
             let kinetic = 0.5 * extraction.part.mass_kg * v * v;
             let missing = metrics.work_j - metrics.joint_work_j - kinetic;

@@ -10,7 +10,7 @@ use breakaway_core::test_models::paper_joint;
 fn settled_force(law: Lugre<f64>, x: f64, v: f64) -> f64 {
     let state = JointState { bristle_m: 0.0, sliding: 0.0 };
     let bristle: Bristle<f64> = Joint::Lugre(law).freeze(&state, x, v, 1.0);
-    let h = 0.1 * bristle.friction_level_n / bristle.relaxation;
+    let h = 0.1 * bristle.friction_level_n / bristle.relaxation();
     let mut z = 0.0;
     for _ in 0..500 {
         let k1 = bristle.rate(v, z);

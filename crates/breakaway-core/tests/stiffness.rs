@@ -1,5 +1,6 @@
 //! Why the plant is stepped implicitly.
 
+use breakaway_core::metrics::Groups;
 use breakaway_core::plant::Integrator;
 use breakaway_core::reference::Reference;
 use breakaway_core::test_models::{paper_as_computed, paper_limits};
@@ -24,7 +25,7 @@ fn run(mut extraction: Extraction<f64>, integrator: Integrator, steps: u32) -> M
     let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
     for _ in 0..(motion.duration_s * 1e5).round() as u32 {
         let sample = extraction.step(&mut state, Draws { disturbance: 0.0 });
-        metrics.update(&paper_limits(), &sample);
+        metrics.update(Groups::ALL, &paper_limits(), &sample);
         if metrics.bounded == 0.0 {
             break;
         }

@@ -3,6 +3,7 @@
 //! can not pass. With powers of two for the units even the bits agree.
 
 use breakaway_core::disturbance::DisturbedQuantity;
+use breakaway_core::metrics::Groups;
 use breakaway_core::plant::Integrator;
 use breakaway_core::test_models::{paper_as_computed, paper_limits};
 use breakaway_core::{Draws, ExtractionState, Metrics};
@@ -75,8 +76,12 @@ fn the_loop_runs_the_same_in_other_units() {
             let (mut metrics, mut their_metrics) = (Metrics::new(), Metrics::new());
             for n in 0..20_000 {
                 let draws = Draws { disturbance: f64::from(n / 10 * 7 % 11) / 5.5 - 1.0 };
-                metrics.update(&limits, &ours.step(&mut state, draws));
-                their_metrics.update(&their_limits, &theirs.step(&mut their_state, draws));
+                metrics.update(Groups::ALL, &limits, &ours.step(&mut state, draws));
+                their_metrics.update(
+                    Groups::ALL,
+                    &their_limits,
+                    &theirs.step(&mut their_state, draws),
+                );
             }
             assert!(metrics.breakaway_s.is_finite() && state.plant.position_m > 0.02);
             let converted = state.map(&mut |name, value| value * units.factor(name));

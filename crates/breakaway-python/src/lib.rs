@@ -2,6 +2,7 @@
 
 mod error;
 mod job;
+mod many;
 
 use breakaway_batch::{FIGURES, Run, TRACE_COLUMNS, imposed_motion, run};
 use breakaway_core::Outcome;
@@ -18,18 +19,22 @@ fn run_one<'py>(
     let job = job::read(job)?;
     let finished = py.detach(|| run(&job, || Python::attach(|py| py.check_signals())))?;
     let figures = PyDict::new(py);
-    for (name, figure) in FIGURES {
-        figures.set_item(name, figure(&job, &finished))?;
+    for figure in FIGURES {
+        figures.set_item(figure.name, (figure.value)(&job, &finished))?;
     }
-    Ok((outcome_name(finished.outcome), figures, trace_columns(py, &finished)?))
+    let outcome = OUTCOMES[usize::from(outcome_code(finished.outcome))];
+    Ok((outcome, figures, trace_columns(py, &finished)?))
 }
 
-fn outcome_name(outcome: Outcome) -> &'static str {
+/// The names of the outcomes, each at the place of its code.
+const OUTCOMES: [&str; 4] = ["released", "not_released", "diverged", "limit_exceeded"];
+
+fn outcome_code(outcome: Outcome) -> u8 {
     match outcome {
-        Outcome::Released => "released",
-        Outcome::NotReleased => "not_released",
-        Outcome::Diverged => "diverged",
-        Outcome::LimitExceeded => "limit_exceeded",
+        Outcome::Released => 0,
+        Outcome::NotReleased => 1,
+        Outcome::Diverged => 2,
+        Outcome::LimitExceeded => 3,
     }
 }
 
@@ -79,7 +84,12 @@ fn breakaway_force(joint: &Bound<'_, PyAny>, position_m: f64) -> PyResult<f64> {
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("OUTCOMES", OUTCOMES)?;
     module.add_function(wrap_pyfunction!(run_one, module)?)?;
+    module.add_function(wrap_pyfunction!(many::run_many, module)?)?;
+    module.add_function(wrap_pyfunction!(many::instructions, module)?)?;
+    module.add_function(wrap_pyfunction!(many::number_place, module)?)?;
+    module.add_function(wrap_pyfunction!(many::fractions, module)?)?;
     module.add_function(wrap_pyfunction!(impose, module)?)?;
     module.add_function(wrap_pyfunction!(breakaway_force, module)?)
 }

@@ -13,7 +13,19 @@ from breakaway.scenario.controller import (
     TwoStep,
     gain_sets,
 )
-from breakaway.scenario.disturbance import UniformDisturbance
+from breakaway.scenario.distribution import (
+    Distribution,
+    LogNormal,
+    LogUniform,
+    Normal,
+    Samples,
+    Uniform,
+)
+from breakaway.scenario.disturbance import (
+    BandLimitedDisturbance,
+    GaussianDisturbance,
+    UniformDisturbance,
+)
 from breakaway.scenario.files import (
     load_scenario,
     parse_scenario,
@@ -33,19 +45,26 @@ from breakaway.scenario.run import Limits, Timing, Trace
 from breakaway.scenario.scenario import Scenario
 
 __all__ = [
+    "BandLimitedDisturbance",
+    "Distribution",
     "FmPulses",
     "FmVibration",
     "Gains",
+    "GaussianDisturbance",
     "IdealActuator",
     "Limits",
+    "LogNormal",
+    "LogUniform",
     "Lugre",
     "MinimumJerk",
+    "Normal",
     "Part",
     "Pid",
     "PidSettings",
     "PolePlacement",
     "PushOnlyActuator",
     "RampReference",
+    "Samples",
     "Scenario",
     "SeizedJoint",
     "StepReference",
@@ -54,6 +73,7 @@ __all__ = [
     "TrapezoidalVelocity",
     "TwoRegion",
     "TwoStep",
+    "Uniform",
     "UniformDisturbance",
     "gain_sets",
     "load_scenario",

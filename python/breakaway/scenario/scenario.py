@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field, model_validator
 from breakaway.errors import ScenarioError
 from breakaway.scenario.actuator import Actuator, IdealActuator
 from breakaway.scenario.controller import Controller, FmVibration, Pid, TwoStep
-from breakaway.scenario.disturbance import UniformDisturbance
+from breakaway.scenario.disturbance import Disturbance, UniformDisturbance
 from breakaway.scenario.joint import Joint, Part
 from breakaway.scenario.model import Model
 from breakaway.scenario.reference import Reference, StepReference
@@ -57,7 +57,7 @@ class Scenario(Model):
     """The part in it."""
     reference: Reference
     """Where the part should be."""
-    disturbance: UniformDisturbance = UniformDisturbance()
+    disturbance: Disturbance = UniformDisturbance()
     """What is not known of the joint force."""
     actuator: Actuator = IdealActuator()
     """What pushes."""

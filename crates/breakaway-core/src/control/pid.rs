@@ -66,8 +66,8 @@ pub struct Pid<R> {
     pub derivative_of: DerivativeOf,
     /// Where the velocity comes from.
     pub velocity_from: VelocityFrom,
-    /// τ_f in s, time constant of the first-order filter on the derivative; 0 for none.
-    pub derivative_filter_s: R,
+    /// τ_f in s, time constant of the first-order filter on the derivative, if it has one.
+    pub derivative_filter_s: Option<R>,
     /// What is done at the actuator's limits.
     pub anti_windup: AntiWindup,
     /// Tracking time in s of the back calculation, above 0.
@@ -86,22 +86,56 @@ pub struct PidState<R> {
 }
 
 /// The filtered derivative in parts, d = kept + share · raw, so that a gain can be multiplied in
-/// before the newest velocity is known.
+/// before the newest velocity is known. Nothing is kept without a filter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Filtered<R> {
-    kept: R,
+    kept: Option<R>,
     share: R,
     raw: R,
 }
 
+impl<R: Real> Gains<R> {
+    /// kp e + kd d + I in N; the derivative last, because the velocity is the last to be known.
+    #[inline(always)]
+    fn force(&self, error_m: R, filtered: &Filtered<R>, integral_n: R) -> R {
+        let kd = self.kd_n_s_per_m;
+        let base = match filtered.kept {
+            Some(kept) => kd.mul_add(kept, integral_n),
+            None => integral_n,
+        };
+        let steady = self.kp_n_per_m.mul_add(error_m, base);
+        (kd * filtered.share).mul_add(filtered.raw, steady)
+    }
+}
+
 impl<R: Real> Pid<R> {
+    /// Without options: on the error and a velocity sensor, unfiltered, without anti-windup.
+    pub fn plain(gains: Gains<R>) -> Self {
+        Self {
+            gains,
+            derivative_of: DerivativeOf::Error,
+            velocity_from: VelocityFrom::Sensor,
+            derivative_filter_s: None,
+            anti_windup: AntiWindup::Off,
+            tracking_time_s: R::one(),
+        }
+    }
+
+    /// Whether this is [`Pid::plain`].
+    pub fn is_plain(&self) -> bool {
+        self.derivative_of == DerivativeOf::Error
+            && self.velocity_from == VelocityFrom::Sensor
+            && self.derivative_filter_s.is_none()
+            && self.anti_windup == AntiWindup::Off
+    }
+
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Pid<S> {
         Pid {
             gains: self.gains.map(f),
             derivative_of: self.derivative_of,
             velocity_from: self.velocity_from,
-            derivative_filter_s: f("derivative_filter_s", self.derivative_filter_s),
+            derivative_filter_s: self.derivative_filter_s.map(|tau| f("derivative_filter_s", tau)),
             anti_windup: self.anti_windup,
             tracking_time_s: f("tracking_time_s", self.tracking_time_s),
         }
@@ -127,11 +161,15 @@ impl<R: Real> Pid<R> {
             DerivativeOf::Error => measured.reference_rate_m_per_s - velocity,
             DerivativeOf::Measurement => -velocity,
         };
-        let share = measured.period_s / (self.derivative_filter_s + measured.period_s);
+        state.previous_position_m = measured.position_m;
+        let Some(filter_s) = self.derivative_filter_s else {
+            state.derivative_m_per_s = raw;
+            return Filtered { kept: None, share: R::one(), raw };
+        };
+        let share = measured.period_s / (filter_s + measured.period_s);
         let kept = (R::one() - share) * state.derivative_m_per_s;
         state.derivative_m_per_s = share.mul_add(raw, kept);
-        state.previous_position_m = measured.position_m;
-        Filtered { kept, share, raw }
+        Filtered { kept: Some(kept), share, raw }
     }
 
     /// The force in N for `gains` after [`Pid::sense`]; moves the integral.
@@ -144,11 +182,8 @@ impl<R: Real> Pid<R> {
         measured: &Measurement<R>,
     ) -> R {
         let error = measured.error_m();
-        let kd = gains.kd_n_s_per_m;
-        let derivative = (kd * filtered.share).mul_add(filtered.raw, kd * filtered.kept);
-        let direct = gains.kp_n_per_m.mul_add(error, derivative);
         let advanced = (gains.ki_n_per_m_s * measured.period_s).mul_add(error, state.integral_n);
-        let wanted = direct + advanced;
+        let wanted = gains.force(error, filtered, advanced);
         let limited = measured.range.limit(wanted);
         match self.anti_windup {
             AntiWindup::Off => {
@@ -159,7 +194,7 @@ impl<R: Real> Pid<R> {
                 let winds_up = (limited.lt(wanted) & state.integral_n.lt(advanced))
                     | (wanted.lt(limited) & advanced.lt(state.integral_n));
                 state.integral_n = R::select(winds_up, state.integral_n, advanced);
-                measured.range.limit(direct + state.integral_n)
+                measured.range.limit(gains.force(error, filtered, state.integral_n))
             }
             AntiWindup::BackCalculation => {
                 let share = measured.period_s / self.tracking_time_s;
@@ -194,7 +229,7 @@ mod tests {
             gains: Gains { kp_n_per_m: 1e4, ki_n_per_m_s: 2e5, kd_n_s_per_m: 50.0 },
             derivative_of: DerivativeOf::Error,
             velocity_from: VelocityFrom::Sensor,
-            derivative_filter_s: 0.0,
+            derivative_filter_s: None,
             anti_windup,
             tracking_time_s: 0.01,
         }
@@ -234,7 +269,7 @@ mod tests {
         let controller = Pid {
             derivative_of: DerivativeOf::Measurement,
             velocity_from: VelocityFrom::PositionDifference,
-            derivative_filter_s: 5e-3,
+            derivative_filter_s: Some(5e-3),
             ..pid(AntiWindup::Off)
         };
         let mut state = at_rest();

@@ -1,11 +1,10 @@
 //! LuGre friction with contact loss.
 
+use core::f64::consts::LOG2_E;
+
 use super::{Bristle, engaged_level};
 use crate::parameters::parameters;
 use crate::real::Real;
-
-/// √(log₂ e).
-const SQRT_LOG2_E: f64 = 1.201_122_408_786_449_8;
 
 parameters! {
     /// Modified LuGre friction, equations (1) to (8).
@@ -45,25 +44,27 @@ impl<R: Real> Lugre<R> {
     /// F_s(x) in N: equation (5).
     #[inline(always)]
     pub fn stiction(&self, x: R) -> R {
-        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, x)
+        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
     /// F_c(x) in N: equation (6).
     #[inline(always)]
     pub fn coulomb(&self, x: R) -> R {
-        engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, x)
+        engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
     /// g(v, x) in N, multiplied by `factor`: equation (3).
     ///
-    /// exp(−(v/v_s)²) is computed as 2^−(s v/v_s)² with s² = log₂ e, a multiplication less on the
-    /// path that decides the speed.
+    /// exp(−(v/v_s)²) is computed as 2^(v² s) with s = −log₂ e / v_s², and both levels as straight
+    /// lines whose coefficients do not change during a run.
     #[inline(always)]
     pub fn friction_level(&self, x: R, v: R, factor: R) -> R {
-        let ratio = v * (R::constant(SQRT_LOG2_E) / self.stribeck_velocity_m_per_s);
-        let coulomb = self.coulomb(x) * factor;
-        let peak = self.stiction(x) * factor - coulomb;
-        let (fraction, power) = (-(ratio * ratio)).exp2_parts();
+        let (end, length) = (self.residual_n, self.engagement_length_m);
+        let coulomb = engaged_level(self.coulomb_n, end, length, factor, x);
+        let seated_peak = self.stiction_n - self.coulomb_n;
+        let peak = engaged_level(seated_peak, R::zero(), length, factor, x);
+        let v_s = self.stribeck_velocity_m_per_s;
+        let (fraction, power) = (v * v * (-R::constant(LOG2_E) / (v_s * v_s))).exp2_parts();
         fraction.mul_add(peak * power, coulomb)
     }
 
@@ -71,7 +72,8 @@ impl<R: Real> Lugre<R> {
     pub(super) fn freeze(&self, x: R, v: R, level_factor: R) -> Bristle<R> {
         Bristle {
             stretch: R::one(),
-            relaxation: self.stiffness_n_per_m * v.abs(),
+            speed_m_per_s: v.abs(),
+            relaxation_n_per_m: self.stiffness_n_per_m,
             friction_level_n: self.friction_level(x, v, level_factor),
             stiffness_n_per_m: self.stiffness_n_per_m,
             damping_n_s_per_m: self.damping_n_s_per_m,

@@ -24,8 +24,10 @@ use crate::real::Real;
 pub struct Bristle<R> {
     /// α, the share of the motion that stretches the bristle: 1 while it can stretch, else 0.
     pub stretch: R,
-    /// A in N/s·(1/m)·m = N/s per meter of deflection: `k_e |v|` for LuGre, 0 for an elastic bristle.
-    pub relaxation: R,
+    /// |v| in m/s.
+    pub speed_m_per_s: R,
+    /// A / |v| in N/m: k_e for LuGre, 0 for an elastic bristle.
+    pub relaxation_n_per_m: R,
     /// g in N, always above zero.
     pub friction_level_n: R,
     /// k in N/m.
@@ -37,10 +39,16 @@ pub struct Bristle<R> {
 }
 
 impl<R: Real> Bristle<R> {
+    /// A in N/s.
+    #[inline(always)]
+    pub fn relaxation(&self) -> R {
+        self.relaxation_n_per_m * self.speed_m_per_s
+    }
+
     /// ż at velocity `v` and deflection `z`.
     #[inline(always)]
     pub fn rate(&self, v: R, z: R) -> R {
-        self.stretch * v - self.relaxation / self.friction_level_n * z
+        self.stretch * v - self.relaxation() / self.friction_level_n * z
     }
 
     /// R for a deflection, its rate and a velocity: equations (1) and (7).

@@ -35,13 +35,13 @@ impl<R: Real> TwoRegion<R> {
     /// F_s(x) in N: equation (5).
     #[inline(always)]
     pub fn stiction(&self, x: R) -> R {
-        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, x)
+        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
     /// F_c(x) in N: equation (6).
     #[inline(always)]
     pub fn coulomb(&self, x: R) -> R {
-        engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, x)
+        engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
     /// Breaks loose, catches, and while sliding holds the deflection that carries F_c(x).
@@ -69,7 +69,8 @@ impl<R: Real> TwoRegion<R> {
     pub(super) fn freeze(&self, state: &JointState<R>) -> Bristle<R> {
         Bristle {
             stretch: R::one() - state.sliding,
-            relaxation: R::zero(),
+            speed_m_per_s: R::zero(),
+            relaxation_n_per_m: R::zero(),
             friction_level_n: R::one(),
             stiffness_n_per_m: self.stiffness_n_per_m,
             damping_n_s_per_m: self.damping_n_s_per_m,

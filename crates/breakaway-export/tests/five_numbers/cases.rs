@@ -7,10 +7,10 @@ use breakaway_core::control::{
     AntiWindup, Controller, DerivativeOf, FmVibration, Gains, Pid, PulseShape, TwoStep,
     VelocityFrom, VibratingPid,
 };
-use breakaway_core::disturbance::{DisturbedQuantity, UniformDisturbance};
+use breakaway_core::disturbance::{Disturbance, DisturbedQuantity, DrawLaw};
 use breakaway_core::extraction::{Part, Timing};
 use breakaway_core::joint::{Joint, Lugre, TwoRegion};
-use breakaway_core::metrics::Limits;
+use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::plant::Integrator;
 use breakaway_core::reference::{Motion, Reference, Step, Trapezoid};
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Real};
@@ -73,7 +73,7 @@ fn pids() -> Vec<Pid<f64>> {
             for anti_windup in
                 [AntiWindup::Off, AntiWindup::Conditional, AntiWindup::BackCalculation]
             {
-                let derivative_filter_s = if pids.len() % 2 == 0 { 0.0 } else { 2e-5 };
+                let derivative_filter_s = if pids.len() % 2 == 0 { None } else { Some(2e-5) };
                 pids.push(Pid {
                     gains: GAINS,
                     derivative_of,
@@ -137,8 +137,12 @@ pub(crate) fn all() -> Vec<Case> {
                 for actuator in actuators {
                     for acts_on in targets {
                         for timing in timings(cases.len() % 3 == 0) {
-                            let disturbance =
-                                UniformDisturbance { var: 0.15, hold_s: 1.6e-4, acts_on };
+                            let disturbance = Disturbance {
+                                law: DrawLaw::Uniform,
+                                var: 0.15,
+                                hold_s: 1.6e-4,
+                                acts_on,
+                            };
                             let part = Part { mass_kg: 1.0 };
                             let extraction = Extraction {
                                 joint,
@@ -225,7 +229,7 @@ impl<R: Real> Run<R> {
     /// The step that all five numbers take.
     pub(crate) fn step(&mut self, disturbance: R) {
         let sample = self.extraction.step(&mut self.state, Draws { disturbance });
-        self.metrics.update(&self.limits, &sample);
+        self.metrics.update(Groups::ALL, &self.limits, &sample);
     }
 
     /// Everything that moves, with its name: first the state, then the metrics.

@@ -1,6 +1,7 @@
 //! One step, every number: the full loop, the same code, computed as `f64`, `f32`, lanes, duals
 //! and expressions, for every combination of its blocks.
 
+mod batches;
 mod cases;
 
 use breakaway_batch::Lanes;
@@ -45,7 +46,7 @@ fn a_lane_has_the_bits_of_its_scalar_run() {
 }
 
 /// A run whose lanes have the numbers of an extraction each.
-fn gather(extraction: impl Fn(u64) -> Extraction<f64>) -> Run<Lanes<32>> {
+fn gather(extraction: impl Fn(u64) -> Extraction<f64>) -> Run<Lanes<f64, 32>> {
     let columns: Vec<Vec<f64>> = (0..32).map(|lane| numbers(&extraction(lane))).collect();
     let mut run = Run::new(&extraction(0), &mut |_, value| Lanes([value; 32]));
     let mut field = 0;

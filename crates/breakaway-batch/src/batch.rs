@@ -1,0 +1,402 @@
+//! Many runs of one extraction: in lanes, on threads, each with numbers and draws of its own.
+
+use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use breakaway_core::actuator::Actuator;
+use breakaway_core::control::{Controller, Pid};
+use breakaway_core::extraction::Timing;
+use breakaway_core::joint::Joint;
+use breakaway_core::metrics::{Groups, Limits};
+use breakaway_core::reference::{Reference, Setpoint};
+use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
+
+use crate::draws::HeldDraws;
+use crate::figures::Figure;
+use crate::instructions::{Instructions, Kernel};
+use crate::lanes::Wide;
+use crate::run::{Job, Run};
+
+/// Runs that differ in their draws and in some of their numbers.
+#[derive(Clone, Debug)]
+pub struct Batch<'a> {
+    /// What the runs have in common. Its run number and trace are not used.
+    pub common: Job,
+    /// The number of each run among the runs of the seed.
+    pub runs: &'a [u64],
+    /// The numbers that differ.
+    pub varied: Vec<Varied<'a>>,
+}
+
+/// A number that differs from run to run.
+#[derive(Clone, Copy, Debug)]
+pub struct Varied<'a> {
+    /// Which one: its place among [`Job::numbers`].
+    pub place: usize,
+    /// Its value in each run.
+    pub values: &'a [f64],
+}
+
+/// What is wanted of each run.
+#[derive(Clone)]
+pub struct Wanted {
+    /// Its figures.
+    pub figures: Vec<Figure>,
+    /// Whether its outcome is judged in full; else only whether it diverged.
+    pub outcome: bool,
+}
+
+/// What the runs gave, in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    /// One column for each figure.
+    pub figures: Vec<Vec<f64>>,
+    /// How each run ended; where outcomes are not wanted, [`Outcome::Diverged`] or
+    /// [`Outcome::NotReleased`].
+    pub outcomes: Vec<Outcome>,
+}
+
+/// How often progress is told, and asked whether to go on.
+const TELL_EVERY: Duration = Duration::from_millis(50);
+
+/// Runs a batch on `threads` threads. Which threads, lanes or instructions compute a run
+/// changes no bit of it: each has the bits of [`crate::run()`].
+///
+/// `tell` is told now and then how many runs are done; once it answers `Err`, so does the batch.
+///
+/// # Errors
+/// What `tell` gave.
+pub fn run_batch<E>(
+    batch: &Batch,
+    wanted: &Wanted,
+    threads: usize,
+    instructions: Instructions,
+    mut tell: impl FnMut(usize) -> Result<(), E>,
+) -> Result<Results, E> {
+    let mut results = Results::of(batch.runs.len(), wanted.figures.len());
+    let groups = wanted.groups(batch);
+    let lanes = instructions.lanes();
+    let packs = Mutex::new(results.packs(lanes).enumerate());
+    let going = AtomicBool::new(true);
+    let work = |done: Sender<usize>| {
+        while let Some((i, mut pack)) = packs.lock().ok().and_then(|mut left| left.next()) {
+            let (first, count) = (i * lanes, pack.outcomes.len());
+            let range = first..first + count;
+            let Some(runs) = instructions.run(InLanes { batch, range, groups, going: &going })
+            else {
+                break; // told to stop
+            };
+            for (lane, run) in runs.iter().enumerate() {
+                pack.keep(lane, &batch.job(first + lane), run, wanted);
+            }
+            let _ = done.send(count); // nobody listens once the batch was stopped
+        }
+    };
+    thread::scope(|scope| {
+        let (sender, done) = mpsc::channel();
+        for _ in 0..threads.max(1) {
+            let sender = sender.clone();
+            scope.spawn(|| work(sender));
+        }
+        drop(sender);
+        let told = tell_until_done(&done, &mut tell);
+        going.store(told.is_ok(), Ordering::Relaxed);
+        told
+    })?;
+    drop(packs);
+    Ok(results)
+}
+
+/// Tells how many runs are done, until all threads are or `tell` has had enough.
+fn tell_until_done<E>(
+    done: &Receiver<usize>,
+    tell: &mut impl FnMut(usize) -> Result<(), E>,
+) -> Result<(), E> {
+    let (mut total, mut told) = (0, Instant::now());
+    loop {
+        match done.recv_timeout(TELL_EVERY) {
+            Ok(count) => total += count,
+            Err(RecvTimeoutError::Timeout) => (),
+            Err(RecvTimeoutError::Disconnected) => return tell(total),
+        }
+        if told.elapsed() >= TELL_EVERY {
+            tell(total)?;
+            told = Instant::now();
+        }
+    }
+}
+
+impl Batch<'_> {
+    /// Run number `i` of the batch on its own.
+    #[must_use]
+    pub fn job(&self, i: usize) -> Job {
+        let mut numbers = self.common.numbers();
+        for varied in &self.varied {
+            numbers[varied.place] = varied.values[i];
+        }
+        Job { run: self.runs[i], ..self.common.with_numbers(|place| numbers[place]) }
+    }
+
+    /// The numbers of several runs side by side; lanes beyond the last run repeat it.
+    fn gather<V: Wide>(&self, range: &Range<usize>) -> (Extraction<V>, Limits<V>) {
+        let mut place = 0;
+        self.common.map_numbers(&mut |_, value| {
+            let varied = self.varied.iter().find(|varied| varied.place == place);
+            place += 1;
+            varied.map_or_else(
+                || V::constant(value),
+                |varied| {
+                    let value = |lane| varied.values[self.at(range, lane)];
+                    V::gather(&(0..V::WIDTH).map(value).collect::<Vec<f64>>())
+                },
+            )
+        })
+    }
+
+    fn at(&self, range: &Range<usize>, lane: usize) -> usize {
+        (range.start + lane).min(range.end - 1)
+    }
+}
+
+impl Wanted {
+    /// What must be counted. An outcome needs a force or a jump only where it has a limit.
+    fn groups(&self, batch: &Batch) -> Groups {
+        let needs = |needs: Groups, figure: &Figure| needs.and(figure.needs);
+        let groups = self.figures.iter().fold(Groups::NONE, needs);
+        if !self.outcome {
+            return groups;
+        }
+        let limits = &batch.common.limits;
+        let limited = |limit: f64| !batch.varied.is_empty() || limit.is_finite();
+        let judged = Groups {
+            extremes: limited(limits.peak_force_max_n),
+            jump: limited(limits.jump_max_m),
+            events: true,
+            ..Groups::NONE
+        };
+        groups.and(judged)
+    }
+}
+
+/// The results of the runs that go through the step together.
+struct Pack<'a> {
+    figures: Vec<&'a mut [f64]>,
+    outcomes: &'a mut [Outcome],
+}
+
+impl Results {
+    fn of(runs: usize, figures: usize) -> Self {
+        Self {
+            figures: vec![vec![f64::NAN; runs]; figures],
+            outcomes: vec![Outcome::NotReleased; runs],
+        }
+    }
+
+    fn packs(&mut self, lanes: usize) -> impl Iterator<Item = Pack<'_>> {
+        let mut figures: Vec<_> = self.figures.iter_mut().map(|c| c.chunks_mut(lanes)).collect();
+        self.outcomes.chunks_mut(lanes).map(move |outcomes| Pack {
+            figures: figures.iter_mut().filter_map(Iterator::next).collect(),
+            outcomes,
+        })
+    }
+}
+
+impl Pack<'_> {
+    fn keep(&mut self, lane: usize, job: &Job, run: &Run, wanted: &Wanted) {
+        for (column, figure) in self.figures.iter_mut().zip(&wanted.figures) {
+            column[lane] = (figure.value)(job, run);
+        }
+        self.outcomes[lane] = run.outcome;
+    }
+}
+
+/// Part of a batch, at most as many runs as there are lanes. Gives nothing if told to stop.
+struct InLanes<'a> {
+    batch: &'a Batch<'a>,
+    range: Range<usize>,
+    groups: Groups,
+    going: &'a AtomicBool,
+}
+
+impl Kernel for InLanes<'_> {
+    type Output = Option<Vec<Run>>;
+
+    /// The commonest kinds are compiled on their own, as for a single run.
+    #[inline(always)]
+    fn run<V: Wide, const N: usize>(self) -> Self::Output {
+        let (extraction, limits) = self.batch.gather::<V>(&self.range);
+        let Extraction { joint, controller, actuator, timing, .. } = extraction;
+        match (joint, controller, actuator) {
+            (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
+                if pid.is_plain() && timing.is_every_period_once() =>
+            {
+                let extraction = Extraction {
+                    joint: Joint::Lugre(joint),
+                    controller: Controller::Pid(Pid::plain(pid.gains)),
+                    actuator: Actuator::Ideal,
+                    timing: Timing::every_period_once(timing.control_period_s),
+                    ..extraction
+                };
+                self.run_kinds::<V, N>(&extraction, &limits)
+            }
+            _ => self.run_kinds::<V, N>(&extraction, &limits),
+        }
+    }
+}
+
+impl InLanes<'_> {
+    #[inline(always)]
+    fn run_kinds<V: Wide, const N: usize>(
+        self,
+        extraction: &Extraction<V>,
+        limits: &Limits<V>,
+    ) -> Option<Vec<Run>> {
+        let Self { batch, range, groups, going } = self;
+        const { assert!(N == V::WIDTH) };
+        let job = &batch.common;
+        let lane_of = |lane: usize| move |_: &'static str, value: V| value.extract(lane);
+        let draws = HeldDraws::<N>::new(
+            job.seed,
+            std::array::from_fn(|lane| batch.runs[batch.at(&range, lane)]),
+            |lane| extraction.disturbance.map(&mut lane_of(lane)),
+            |_| job.extraction.timing.control_period_s,
+        );
+        let setpoints = Setpoints::of(extraction);
+        let run = Lockstep { extraction, limits, setpoints, groups };
+        let mut moving =
+            Moving { state: ExtractionState::at_rest(), metrics: Metrics::new(), draws };
+        let (mut n, mut trusted) = (0, true);
+        while n < job.samples && going.load(Ordering::Relaxed) && !moving.all_left() {
+            let block = n..job.samples.min(n + BLOCK);
+            n = block.end;
+            if trusted {
+                let start = moving;
+                run.advance::<N, false>(&mut moving, block.clone());
+                trusted = moving.none_left(limits);
+                if trusted {
+                    continue;
+                }
+                moving = start;
+            }
+            run.advance::<N, true>(&mut moving, block);
+        }
+        if !going.load(Ordering::Relaxed) {
+            return None;
+        }
+        let Moving { state, metrics, .. } = moving;
+        let finish = |lane| {
+            let end = state.plant.position_m.extract(lane);
+            Run::finished(metrics.map(&mut lane_of(lane)), end, &limits.map(&mut lane_of(lane)))
+        };
+        Some((0..range.len()).map(finish).collect())
+    }
+}
+
+/// How many samples go by between two looks at bounds and at whether to go on.
+const BLOCK: u64 = 1024;
+
+/// What runs that go through the step together have in common.
+struct Lockstep<'a, V> {
+    extraction: &'a Extraction<V>,
+    limits: &'a Limits<V>,
+    setpoints: Setpoints<V>,
+    groups: Groups,
+}
+
+/// What moves.
+#[derive(Clone, Copy)]
+struct Moving<V, const N: usize> {
+    state: ExtractionState<V>,
+    metrics: Metrics<V>,
+    draws: HeldDraws<N>,
+}
+
+impl<V: Wide, const N: usize> Moving<V, N> {
+    fn all_left(&self) -> bool {
+        (0..N).all(|lane| self.metrics.bounded.extract(lane) == 0.0)
+    }
+
+    /// Whether every run is within its bounds, after samples that were counted unseen.
+    fn none_left(&self, limits: &Limits<V>) -> bool {
+        let within = V::flag(self.metrics.stayed_within(limits));
+        let position_m = self.state.plant.position_m;
+        (0..N).all(|lane| within.extract(lane) == 1.0 && position_m.extract(lane).is_finite())
+    }
+}
+
+impl<V: Wide> Lockstep<'_, V> {
+    /// Takes samples, looking at the bounds at each of them or not at all.
+    ///
+    /// What is read and what moves at every sample is copied first, so that it is known to be this
+    /// function's own, and what does not change is computed once.
+    #[inline(always)]
+    fn advance<const N: usize, const LOOK: bool>(
+        &self,
+        moving: &mut Moving<V, N>,
+        samples: Range<u64>,
+    ) {
+        let (extraction, limits) = (*self.extraction, *self.limits);
+        let Moving { mut state, mut metrics, .. } = *moving;
+        let mut n = samples.start;
+        while n < samples.end {
+            let redraw = moving.draws.redraw_after(n);
+            let disturbance = V::gather(moving.draws.held());
+            let factors = extraction.disturbance.factors(Draws { disturbance });
+            let end = samples.end.min(redraw);
+            while n < end {
+                let sample = extraction.follow(&mut state, &self.setpoints.at(n), &factors);
+                if LOOK {
+                    metrics.update(self.groups, &limits, &sample);
+                } else {
+                    metrics.update_unseen(self.groups, &limits, &sample);
+                }
+                n += 1;
+            }
+        }
+        (moving.state, moving.metrics) = (state, metrics);
+    }
+}
+
+/// Where the runs should be: for all of them at once, if they share their reference.
+enum Setpoints<V> {
+    Shared(Reference<f64>, f64),
+    Own(Reference<V>, V),
+}
+
+impl<V: Wide> Setpoints<V> {
+    fn of(extraction: &Extraction<V>) -> Self {
+        let (reference, period_s) = (extraction.reference, extraction.timing.control_period_s);
+        let mut shared = true;
+        let first = reference.map(&mut |_, value| {
+            let first = value.extract(0);
+            shared &= (1..V::WIDTH).all(|lane| value.extract(lane).to_bits() == first.to_bits());
+            first
+        });
+        if shared {
+            Self::Shared(first, period_s.extract(0))
+        } else {
+            Self::Own(reference, period_s)
+        }
+    }
+
+    #[inline(always)]
+    fn at(&self, sample: u64) -> Setpoint<V> {
+        match self {
+            Self::Shared(reference, period_s) => {
+                let shared = reference.sample(sample as f64 * period_s);
+                Setpoint {
+                    time_s: V::constant(shared.time_s),
+                    position_m: V::constant(shared.position_m),
+                    rate_m_per_s: V::constant(shared.rate_m_per_s),
+                }
+            }
+            Self::Own(reference, period_s) => {
+                reference.sample(V::constant(sample as f64) * *period_s)
+            }
+        }
+    }
+}

@@ -1,0 +1,9 @@
+"""Many runs of one scenario: draws of their own, and parts of their own."""
+
+from __future__ import annotations
+
+from breakaway.batch.batch import Batch
+from breakaway.batch.draw import Design, draw_columns, grid_columns
+from breakaway.batch.simulation import METRICS, simulate_many
+
+__all__ = ["METRICS", "Batch", "Design", "draw_columns", "grid_columns", "simulate_many"]
