@@ -7,13 +7,14 @@ UV := $(BIN)/uv --quiet
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
 
-.PHONY: help demo test lint bench docs lock clean
+.PHONY: help demo test lint bench peers docs lock clean
 
 help:
 	@echo "make demo    set up, then reproduce the paper into out/reproduction"
 	@echo "make test    set up, then run every test"
 	@echo "make lint    formatting, static checks, layer rules"
 	@echo "make bench   measure speed and memory, into bench/results.json"
+	@echo "make peers   the same loop in other tools, into bench/peers/results.md"
 	@echo "make docs    Rust API pages, and the pictures of the README"
 	@echo "make lock    resolve the Python lock files anew"
 
@@ -21,13 +22,13 @@ demo: $(VENV)/.built
 	$(BIN)/breakaway reproduce --out out/reproduction
 
 test: $(VENV)/.built $(VENV)/.development
-	$(CARGO_TEST) --features breakaway-core/serde
+	$(CARGO_TEST) --features breakaway-core/serde,breakaway-batch/yardstick
 	cargo check --quiet --locked -p breakaway-core --no-default-features
 	$(BIN)/python -m pytest -n 2
 
 lint: $(VENV)/.built $(VENV)/.development
 	cargo fmt --all --check
-	cargo clippy --quiet --locked --workspace --all-targets --features breakaway-core/serde -- -D warnings
+	cargo clippy --quiet --locked --workspace --all-targets --features breakaway-core/serde,breakaway-batch/yardstick -- -D warnings
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -62,8 +63,8 @@ $(VENV)/.built: $(VENV)/.runtime $(RUST_SOURCES)
 	@touch $@
 
 lock: $(VENV)/.installer
-	$(UV) pip compile pyproject.toml --group build --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/runtime.lock
-	$(UV) pip compile pyproject.toml --group build --group dev --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/dev.lock
+	$(UV) pip compile pyproject.toml --all-extras --group build --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/runtime.lock
+	$(UV) pip compile pyproject.toml --all-extras --group build --group dev --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/dev.lock
 
 clean:
 	rm -rf $(VENV) target out

@@ -16,7 +16,7 @@ from breakaway.scenario import parse_scenario
 from breakaway.scenario.template import scenario_template
 
 Call = Callable[..., Any]
-COMMANDS = ("run", "design", "identify", "presets", "init", "schema", "reproduce")
+COMMANDS = ("run", "design", "identify", "presets", "init", "schema", "reproduce", "study")
 
 
 def test_presets_are_listed(call: Call) -> None:

@@ -225,39 +225,12 @@ struct InLanes<'a> {
 impl Kernel for InLanes<'_> {
     type Output = Option<Vec<Run>>;
 
-    /// The commonest kinds are compiled on their own, as for a single run.
     #[inline(always)]
     fn run<V: Wide, const N: usize>(self) -> Self::Output {
-        let (extraction, limits) = self.batch.gather::<V>(&self.range);
-        let Extraction { joint, controller, actuator, timing, .. } = extraction;
-        match (joint, controller, actuator) {
-            (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
-                if pid.is_plain() && timing.is_every_period_once() =>
-            {
-                let extraction = Extraction {
-                    joint: Joint::Lugre(joint),
-                    controller: Controller::Pid(Pid::plain(pid.gains)),
-                    actuator: Actuator::Ideal,
-                    timing: Timing::every_period_once(timing.control_period_s),
-                    ..extraction
-                };
-                self.run_kinds::<V, N>(&extraction, &limits)
-            }
-            _ => self.run_kinds::<V, N>(&extraction, &limits),
-        }
-    }
-}
-
-impl InLanes<'_> {
-    #[inline(always)]
-    fn run_kinds<V: Wide, const N: usize>(
-        self,
-        extraction: &Extraction<V>,
-        limits: &Limits<V>,
-    ) -> Option<Vec<Run>> {
-        let Self { batch, range, groups, going } = self;
         const { assert!(N == V::WIDTH) };
+        let Self { batch, range, groups, going } = self;
         let job = &batch.common;
+        let (extraction, limits) = batch.gather::<V>(&range);
         let lane_of = |lane: usize| move |_: &'static str, value: V| value.extract(lane);
         let draws = HeldDraws::<N>::new(
             job.seed,
@@ -265,25 +238,15 @@ impl InLanes<'_> {
             |lane| extraction.disturbance.map(&mut lane_of(lane)),
             |_| job.extraction.timing.control_period_s,
         );
-        let setpoints = Setpoints::of(extraction);
-        let run = Lockstep { extraction, limits, setpoints, groups };
         let mut moving =
             Moving { state: ExtractionState::at_rest(), metrics: Metrics::new(), draws };
-        let (mut n, mut trusted) = (0, true);
-        while n < job.samples && going.load(Ordering::Relaxed) && !moving.all_left() {
-            let block = n..job.samples.min(n + BLOCK);
-            n = block.end;
-            if trusted {
-                let start = moving;
-                run.advance::<N, false>(&mut moving, block.clone());
-                trusted = moving.none_left(limits);
-                if trusted {
-                    continue;
-                }
-                moving = start;
-            }
-            run.advance::<N, true>(&mut moving, block);
+        let setpoints = Setpoints::of(&extraction);
+        let lockstep = Lockstep { samples: job.samples, limits: &limits, setpoints, groups, going };
+        let mut n = 0;
+        if let Some(plain) = plain_kinds(&extraction) {
+            n = lockstep.trust(&plain, &mut moving);
         }
+        lockstep.look(&extraction, &mut moving, n);
         if !going.load(Ordering::Relaxed) {
             return None;
         }
@@ -296,16 +259,28 @@ impl InLanes<'_> {
     }
 }
 
+/// The extraction again if it is of the commonest kinds, written so that the compiler sees them.
+#[inline(always)]
+fn plain_kinds<V: Wide>(extraction: &Extraction<V>) -> Option<Extraction<V>> {
+    let Extraction { joint, controller, actuator, timing, .. } = *extraction;
+    match (joint, controller, actuator) {
+        (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
+            if pid.is_plain() && timing.is_every_period_once() =>
+        {
+            Some(Extraction {
+                joint: Joint::Lugre(joint),
+                controller: Controller::Pid(Pid::plain(pid.gains)),
+                actuator: Actuator::Ideal,
+                timing: Timing::every_period_once(timing.control_period_s),
+                ..*extraction
+            })
+        }
+        _ => None,
+    }
+}
+
 /// How many samples go by between two looks at bounds and at whether to go on.
 const BLOCK: u64 = 1024;
-
-/// What runs that go through the step together have in common.
-struct Lockstep<'a, V> {
-    extraction: &'a Extraction<V>,
-    limits: &'a Limits<V>,
-    setpoints: Setpoints<V>,
-    groups: Groups,
-}
 
 /// What moves.
 #[derive(Clone, Copy)]
@@ -328,18 +303,56 @@ impl<V: Wide, const N: usize> Moving<V, N> {
     }
 }
 
+/// What runs that go through the step together have in common, beside the extraction.
+struct Lockstep<'a, V> {
+    samples: u64,
+    limits: &'a Limits<V>,
+    setpoints: Setpoints<V>,
+    groups: Groups,
+    going: &'a AtomicBool,
+}
+
 impl<V: Wide> Lockstep<'_, V> {
-    /// Takes samples, looking at the bounds at each of them or not at all.
-    ///
+    /// Takes blocks of samples without looking at the bounds, until a block has left them; undoes that
+    /// one, and gives the number of its first sample. Extractions of the commonest kinds only: for
+    /// each way to step, everything is compiled once for each kind of instructions.
+    #[inline(always)]
+    fn trust<const N: usize>(&self, plain: &Extraction<V>, moving: &mut Moving<V, N>) -> u64 {
+        let mut n = 0;
+        while n < self.samples && self.going.load(Ordering::Relaxed) {
+            let start = *moving;
+            let end = self.samples.min(n + BLOCK);
+            self.advance::<N, false>(plain, moving, n..end);
+            if !moving.none_left(self.limits) {
+                *moving = start;
+                break;
+            }
+            n = end;
+        }
+        n
+    }
+
+    /// Takes blocks of samples, looking at the bounds at each of them, until all runs have ended.
+    #[inline(always)]
+    fn look<const N: usize>(&self, any: &Extraction<V>, moving: &mut Moving<V, N>, first: u64) {
+        let mut n = first;
+        while n < self.samples && self.going.load(Ordering::Relaxed) && !moving.all_left() {
+            let end = self.samples.min(n + BLOCK);
+            self.advance::<N, true>(any, moving, n..end);
+            n = end;
+        }
+    }
+
     /// What is read and what moves at every sample is copied first, so that it is known to be this
     /// function's own, and what does not change is computed once.
     #[inline(always)]
     fn advance<const N: usize, const LOOK: bool>(
         &self,
+        extraction: &Extraction<V>,
         moving: &mut Moving<V, N>,
         samples: Range<u64>,
     ) {
-        let (extraction, limits) = (*self.extraction, *self.limits);
+        let (extraction, limits) = (*extraction, *self.limits);
         let Moving { mut state, mut metrics, .. } = *moving;
         let mut n = samples.start;
         while n < samples.end {

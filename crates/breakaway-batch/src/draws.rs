@@ -30,41 +30,47 @@ impl Stream {
     }
 }
 
-/// Four random words for each of `N` counters, side by side, and a key.
+/// Four random words of 32 bits for each of `N` counters, side by side, and a key.
+///
+/// The words are held in 64 bits each, because their products are that long.
 #[must_use]
 #[inline(always)]
-pub fn philox4x32<const N: usize>(mut counter: [[u32; N]; 4], mut key: [u32; 2]) -> [[u32; N]; 4] {
+pub fn philox4x32<const N: usize>(mut counter: [[u64; N]; 4], mut key: [u32; 2]) -> [[u64; N]; 4] {
     for round in 0..10 {
         if round > 0 {
             key[0] = key[0].wrapping_add(0x9E37_79B9);
             key[1] = key[1].wrapping_add(0xBB67_AE85);
         }
         for i in 0..N {
-            let product0 = u64::from(counter[0][i]) * 0xD251_1F53;
-            let product1 = u64::from(counter[2][i]) * 0xCD9E_8D57;
-            counter[0][i] = (product1 >> 32) as u32 ^ counter[1][i] ^ key[0];
-            counter[1][i] = product1 as u32;
-            counter[2][i] = (product0 >> 32) as u32 ^ counter[3][i] ^ key[1];
-            counter[3][i] = product0 as u32;
+            let product0 = (counter[0][i] & LOW) * 0xD251_1F53;
+            let product1 = (counter[2][i] & LOW) * 0xCD9E_8D57;
+            counter[0][i] = (product1 >> 32) ^ counter[1][i] ^ u64::from(key[0]);
+            counter[1][i] = product1 & LOW;
+            counter[2][i] = (product0 >> 32) ^ counter[3][i] ^ u64::from(key[1]);
+            counter[3][i] = product0 & LOW;
         }
     }
     counter
 }
+
+/// The lower 32 bits.
+const LOW: u64 = 0xFFFF_FFFF;
 
 /// Draw number `index[i]` of run `run[i]`: 53 random bits each.
 ///
 /// The key is the seed; the counter is (index, stream, run), the run in two words.
 #[inline(always)]
 fn bits<const N: usize>(seed: u64, run: &[u64; N], stream: Stream, index: &[u32; N]) -> [u64; N] {
-    let (mut low, mut high) = ([0; N], [0; N]);
+    let mut counter = [[u64::from(stream.word()); N]; 4];
     for i in 0..N {
-        (low[i], high[i]) = (run[i] as u32, (run[i] >> 32) as u32);
+        counter[0][i] = u64::from(index[i]);
+        counter[2][i] = run[i] & LOW;
+        counter[3][i] = run[i] >> 32;
     }
-    let counter = [*index, [stream.word(); N], low, high];
     let words = philox4x32(counter, [seed as u32, (seed >> 32) as u32]);
     let mut bits = [0; N];
     for i in 0..N {
-        bits[i] = (u64::from(words[1][i]) << 32 | u64::from(words[0][i])) >> 11;
+        bits[i] = (words[1][i] << 32 | words[0][i]) >> 11;
     }
     bits
 }
@@ -226,7 +232,8 @@ mod tests {
             ),
         ];
         for (counter, key, words) in known {
-            assert_eq!(philox4x32(counter.map(|word| [word]), key), words.map(|word| [word]));
+            let wide = |words: [u32; 4]| words.map(|word| [u64::from(word)]);
+            assert_eq!(philox4x32(wide(counter), key), wide(words));
         }
     }
 

@@ -67,7 +67,7 @@ impl Instructions {
     }
 }
 
-const PORTABLE_LANES: usize = 8;
+const PORTABLE_LANES: usize = 4;
 #[cfg(target_arch = "x86_64")]
 const AVX2_LANES: usize = 16;
 #[cfg(avx512)]

@@ -43,8 +43,7 @@ def check_paths(scenario: Scenario, paths: Mapping[str, Any]) -> None:
     """
     for path in paths:
         owner, name = _owner(scenario, path)
-        field = type(owner).model_fields[name]
-        if float not in (field.annotation, *getattr(field.annotation, "__args__", ())):
+        if not _is_number(type(owner).model_fields[name].annotation):
             raise StudyError(f"{path}: is not a number that can differ from run to run")
         if path.split(".")[0] in ("timing", "trace"):
             raise StudyError(
@@ -86,8 +85,13 @@ def _numbers(model: BaseModel, prefix: str) -> Iterator[str]:
         value = getattr(model, name)
         if isinstance(value, BaseModel):
             yield from _numbers(value, f"{prefix}{name}.")
-        elif float in (field.annotation, *getattr(field.annotation, "__args__", ())):
+        elif _is_number(field.annotation):
             yield f"{prefix}{name}"
+
+
+def _is_number(annotation: object) -> bool:
+    """Whether a field holds a number, maybe one within bounds or one that may be left out."""
+    return annotation is float or any(map(_is_number, getattr(annotation, "__args__", ())))
 
 
 def check_values(scenario: Scenario, columns: Mapping[str, Array]) -> None:

@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 
 from breakaway import _core
 from breakaway.errors import StudyError
-from breakaway.scenario.distribution import Distribution, Samples
+from breakaway.scenario.distribution import (
+    Distribution,
+    LogNormal,
+    LogUniform,
+    Normal,
+    Samples,
+    Uniform,
+)
 
 Array = NDArray[np.float64]
 Design = Literal["random", "sobol", "latin_hypercube"]
@@ -56,7 +63,8 @@ def draw_columns(
     Raises
     ------
     StudyError
-        There is no such design, the runs are not among it, or shared samples differ in length.
+        There is no such design, the runs are not among it, something is not a distribution, or
+        shared samples differ in length.
 
     Examples
     --------
@@ -73,6 +81,9 @@ def draw_columns(
     size = runs.stop if total is None else total
     if runs.step != 1 or runs.start < 0 or runs.stop > size:
         raise StudyError(f"runs: {runs} are not consecutive runs of a design of {size}")
+    for path, distribution in vary.items():
+        if not isinstance(distribution, Uniform | LogUniform | Normal | LogNormal | Samples):
+            raise StudyError(f"vary[{path!r}]: {distribution!r} is not a distribution")
     _check_shared(vary)
     points = {} if design == "random" else _points(design, len(vary), size, seed)
     columns = {}

@@ -130,7 +130,7 @@ def simulate_many(
 def _wanted(metrics: Sequence[str] | None) -> Sequence[str]:
     if metrics is None:
         return METRICS
-    if isinstance(metrics, str) or not metrics:
+    if not isinstance(metrics, Sequence) or isinstance(metrics, str) or not metrics:
         raise StudyError(f"metrics: {metrics!r} is not a list of names; give some of {METRICS}")
     for name in metrics:
         if name not in METRICS:

@@ -14,6 +14,7 @@ from breakaway.cli.reproduce import reproduce
 from breakaway.cli.run import run
 from breakaway.cli.scenarios import init, presets, schema
 from breakaway.cli.show import ClosedOutput, say
+from breakaway.cli.study import study
 from breakaway.errors import BreakawayError
 
 INTERRUPTED = 130
@@ -29,7 +30,7 @@ EPILOG = """
 [bold]Exit codes[/bold]
   0    done; a run that diverges is a finding, not an error
   1    unexpected: a fault of breakaway
-  2    invalid input: command line, scenario, joint file or log
+  2    invalid input: command line, scenario, study, joint file or log
   3    output can not be written
   4    not stable, where --require-stable asks for it
   130  interrupted
@@ -97,6 +98,13 @@ app.command(
         "breakaway run paper_as_computed --json | jq .metrics.peak_force_n",
     )
 )(run)
+app.command(
+    epilog=_examples(
+        "breakaway study spread.toml --out result",
+        "breakaway study spread.toml --out result --resume",
+        "breakaway study spread.toml --out result --json | jq .result",
+    )
+)(study)
 app.command(
     epilog=_examples(
         "breakaway design paper_as_computed",

@@ -1,0 +1,236 @@
+"""``breakaway study``: many simulations that answer one question."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from breakaway.cli.quantity import show, split_unit
+from breakaway.cli.show import Sheet, say, say_json
+
+if TYPE_CHECKING:
+    from breakaway.studies import StudyProgress, StudyResult
+
+ROWS_MAX = 40
+"""Most rows of a table that are printed; its file has all."""
+
+OUTCOMES = ("released", "not_released", "limit_exceeded", "diverged")
+
+
+def study(
+    file: Annotated[Path, typer.Argument(help="TOML file of the study.", metavar="STUDY.toml")],
+    out: Annotated[
+        Path, typer.Option(help="Folder for parts, summary, tables and figures.", metavar="DIR")
+    ],
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a study that DIR holds.")
+    ] = False,
+    threads: Annotated[
+        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+) -> None:
+    """Run many simulations that answer one question: a sweep, robustness, sensitivity, comparison.
+
+    The folder receives manifest.json first, then the runs in parts as they
+    finish (Parquet), and in the end summary.json, tables (CSV), figures, and
+    study.toml, which holds all it takes to run it again. A study that was
+    interrupted or killed goes on with --resume and computes nothing twice.
+    """
+    from breakaway.studies import load_study, run_study
+
+    asked = load_study(file)
+    if out.exists():
+        from breakaway.output import refuse_to_overwrite
+
+        refuse_to_overwrite(file, out / "study.toml")
+    try:
+        with _shown_progress(asked.name) as progress:
+            done = run_study(
+                asked, out, resume=resume, threads=threads, progress=progress, notice=_notice
+            )
+    except KeyboardInterrupt:
+        if (out / "manifest.json").exists():
+            _notice(
+                f"finished parts are kept; go on with: breakaway study {file} --out {out} --resume"
+            )
+        raise
+    files = sorted(path for path in out.iterdir() if path.is_file() and path.name[0] != ".")
+    summary = done.summary
+    if json:
+        say_json(summary | {"files": [str(path) for path in files]})
+        return
+    say(*_tables(done, summary))
+    for sentence in summary["result"]:
+        say(sentence)
+    for note in summary["notes"]:
+        say(f"note: {note}")
+    say(f"wrote {len(done.part_files)} parts to {out / 'parts'}")
+    for path in files:
+        say(f"wrote {path}")
+
+
+def _notice(sentence: str) -> None:
+    print(sentence, file=sys.stderr)
+
+
+@contextmanager
+def _shown_progress(name: str) -> Iterator[Callable[[StudyProgress], None] | None]:
+    """Show on a terminal how far a study is: bar, runs, rate, time left; in pipes nothing."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=None),
+        TextColumn("{task.percentage:>3.0f} %  {task.fields[told]}", markup=False),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(name, total=None, told="")
+        began = time.monotonic()
+
+        def report(at: StudyProgress) -> None:
+            told = progress_in_words(at, time.monotonic() - began)
+            bar.update(
+                task,
+                completed=at.runs_done,
+                total=at.runs_max,
+                description=f"{name}: {at.doing}",
+                told=told,
+            )
+
+        yield report
+
+
+def progress_in_words(at: StudyProgress, elapsed_s: float) -> str:
+    """Say how many runs are done, how fast, and how long the rest takes at most.
+
+    Runs that were found on disk do not count into the rate.
+
+    Examples
+    --------
+    >>> from breakaway.studies import StudyProgress
+    >>> at = StudyProgress(runs_done=3000, runs_found=1000, runs_max=9000, doing="grid")
+    >>> progress_in_words(at, 20.0)
+    '3000 of 9000 runs, 100 runs/s, 1 min 00 s left'
+
+    """
+    told = f"{at.runs_done} of {at.runs_max} runs"
+    computed = at.runs_done - at.runs_found
+    if computed <= 0 or elapsed_s <= 0.0:
+        return told
+    rate = computed / elapsed_s
+    left_s = round((at.runs_max - at.runs_done) / rate)
+    minutes, seconds = divmod(left_s, 60)
+    hours, minutes = divmod(minutes, 60)
+    left = f"{hours} h {minutes:02} min" if hours else f"{minutes} min {seconds:02} s"
+    speed = f"{rate:,.0f}" if rate >= 10.0 else f"{rate:.2g}"
+    return f"{told}, {speed} runs/s, {left if hours or minutes else f'{seconds} s'} left"
+
+
+def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
+    """Give the tables of a kind of study, as far as they are wanted on a screen."""
+    tables, metrics = summary["tables"], done.study.shown
+    make: dict[str, Callable[[list[dict[str, Any]]], Sheet]] = {
+        "points": lambda rows: _points(rows, list(done.manifest["labels"]), metrics),
+        "trail": lambda rows: _trail(rows, summary["over"]),
+        "indices": lambda rows: _indices(rows, metrics),
+        "outcomes": _outcomes,
+        "differences": lambda rows: _differences(rows, metrics),
+    }
+    shown: list[Sheet | str] = []
+    for name, rows in tables.items():
+        sheet = make[name](rows)
+        shown.append(sheet)
+        if sheet.row_count == ROWS_MAX:
+            shown.append(f"the first {ROWS_MAX} rows; {name}.csv has all")
+    return shown
+
+
+def _points(rows: Sequence[Mapping[str, Any]], labels: list[str], metrics: Sequence[str]) -> Sheet:
+    seen = [name for name in OUTCOMES if any(row[name] for row in rows)]
+    columns = [*labels, "runs", *seen, *(f"{split_unit(name)[0]}: median" for name in metrics)]
+    sheet = Sheet("", columns, numbers=columns)
+    for row in rows[:ROWS_MAX]:
+        sheet.add(
+            *(_level(row[name]) for name in labels),
+            str(row["runs"]),
+            *(_share(row, name) for name in seen),
+            *(show(name, row[f"{name}_median"]) for name in metrics),
+        )
+    return sheet
+
+
+def _trail(rows: Sequence[Mapping[str, Any]], over: str) -> Sheet:
+    columns = ["step", over, "runs", "failures", "estimate", "upper bound", "verdict"]
+    sheet = Sheet("", columns, numbers=columns[:-1])
+    for row in rows[:ROWS_MAX]:
+        sheet.add(
+            str(row["step"]),
+            _level(row[over]),
+            str(row["runs"]),
+            str(row["failures"]),
+            f"{row['failure_probability']:.3g}",
+            f"{row['upper_bound']:.3g}",
+            "survived" if row["survived"] else "not shown to be survived",
+        )
+    return sheet
+
+
+def _indices(rows: Sequence[Mapping[str, Any]], metrics: Sequence[str]) -> Sheet:
+    columns = ["metric", "input", "first order", "total order"]
+    sheet = Sheet("", columns, numbers=columns[2:])
+    for row in [row for row in rows if row["metric"] in metrics][:ROWS_MAX]:
+        sheet.add(
+            split_unit(row["metric"])[0],
+            row["input"],
+            *(
+                f"{row[key]:.3f} ± {row[f'{key}_error']:.3f}"
+                for key in ("first_order", "total_order")
+            ),
+        )
+    return sheet
+
+
+def _outcomes(rows: Sequence[Mapping[str, Any]]) -> Sheet:
+    seen = [name for name in OUTCOMES if any(row[name] for row in rows)]
+    columns = ["controller", "runs", *seen, "p"]
+    sheet = Sheet("", columns, numbers=columns[1:])
+    for row in rows[:ROWS_MAX]:
+        p = "" if row["p"] is None else f"{row['p']:.2g}"
+        sheet.add(row["controller"], str(row["runs"]), *(_share(row, name) for name in seen), p)
+    return sheet
+
+
+def _differences(rows: Sequence[Mapping[str, Any]], metrics: Sequence[str]) -> Sheet:
+    columns = ["controller", "metric", "pairs", "median difference", "from", "to", "lower in"]
+    sheet = Sheet("", columns, numbers=columns[2:])
+    for row in [row for row in rows if row["metric"] in metrics][:ROWS_MAX]:
+        name = row["metric"]
+        lower = "" if row["lower_share"] is None else f"{100 * row['lower_share']:.1f} %"
+        sheet.add(
+            row["controller"],
+            split_unit(name)[0],
+            str(row["pairs"]),
+            *(show(name, row[key]) for key in ("difference", "difference_low", "difference_high")),
+            lower,
+        )
+    return sheet
+
+
+def _share(row: Mapping[str, Any], name: str) -> str:
+    share, low, high = (100 * row[f"{name}_{key}"] for key in ("share", "low", "high"))
+    return f"{share:.4g} % ({low:.3g} to {high:.3g})"
+
+
+def _level(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

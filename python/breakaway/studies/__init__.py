@@ -1,0 +1,35 @@
+"""Studies: many simulations that answer one question, in a folder that outlives a kill."""
+
+from __future__ import annotations
+
+from breakaway.studies.files import load_study
+from breakaway.studies.result import StudyResult, open_study
+from breakaway.studies.running import StudyProgress, run_study
+from breakaway.studies.study import (
+    ComparedController,
+    CompareStudy,
+    CompareTable,
+    RobustnessStudy,
+    RobustnessTable,
+    SensitivityStudy,
+    SensitivityTable,
+    SweepStudy,
+    SweepTable,
+)
+
+__all__ = [
+    "CompareStudy",
+    "CompareTable",
+    "ComparedController",
+    "RobustnessStudy",
+    "RobustnessTable",
+    "SensitivityStudy",
+    "SensitivityTable",
+    "StudyProgress",
+    "StudyResult",
+    "SweepStudy",
+    "SweepTable",
+    "load_study",
+    "open_study",
+    "run_study",
+]

@@ -1,0 +1,227 @@
+"""The parts of a study in a folder: written whole, read back, and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from breakaway._core import OUTCOMES
+from breakaway.batch.batch import Batch, unit_of
+from breakaway.output import write_atomically
+from breakaway.studies.levels import Level
+from breakaway.studies.points import Point
+
+PARTS = "parts"
+"""Folder of the parts within that of a study."""
+LARGE = 1000
+"""Fewest runs of a piece whose columns are read one by one."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Some runs of one point within a part."""
+
+    point: int
+    """Number of the point."""
+    rows: range
+    """Its runs, counted from the first of the point."""
+    offset: int
+    """Row of the part where they start."""
+
+
+def laid_out(
+    points: Sequence[Point], first_point: int, runs_per_part: int
+) -> Iterator[list[Piece]]:
+    """Lay points out into parts of equal length, the last one shorter.
+
+    Small points share a part, and large ones take several.
+    """
+    pieces: list[Piece] = []
+    filled = 0
+    for number, point in enumerate(points, first_point):
+        start, count = 0, len(point.runs)
+        while start < count:
+            taken = min(count - start, runs_per_part - filled)
+            pieces.append(Piece(number, range(start, start + taken), filled))
+            start, filled = start + taken, filled + taken
+            if filled == runs_per_part:
+                yield pieces
+                pieces, filled = [], 0
+    if pieces:
+        yield pieces
+
+
+class Parts:
+    """The columns of a study's parts, and the files they are in."""
+
+    def __init__(
+        self, folder: Path, labels: Mapping[str, str], varied: Sequence[str], metrics: Sequence[str]
+    ) -> None:
+        self.folder = folder / PARTS
+        self._schema = part_schema(labels, varied, metrics)
+        self._kept: tuple[int, Any] = (-1, None)
+
+    def path(self, number: int) -> Path:
+        """Give the file of a part."""
+        return self.folder / f"part-{number:06d}.parquet"
+
+    def remove_beyond(self, count: int) -> list[Path]:
+        """Remove the parts whose number is not below ``count``, and give their files."""
+        kept = {self.path(number) for number in range(count)}
+        beyond = [path for path in sorted(self.folder.glob("part-*.parquet")) if path not in kept]
+        for path in beyond:
+            path.unlink()
+        return beyond
+
+    def write(self, number: int, pieces: Sequence[tuple[Piece, Point, Batch]]) -> None:
+        """Write a part, whole or not at all.
+
+        Raises
+        ------
+        OutputError
+            The folder can not be written, or the disk is full.
+
+        """
+        arrow: Any = import_module("pyarrow")
+        tables = [self._table(piece, point, batch) for piece, point, batch in pieces]
+        write_atomically(self.path(number), _as_bytes(arrow.concat_tables(tables)))
+
+    def _table(self, piece: Piece, point: Point, batch: Batch) -> Any:  # noqa: ANN401 - no stubs
+        arrow: Any = import_module("pyarrow")
+        columns: dict[str, Any] = {"point": np.full(len(batch), piece.point, dtype=np.int32)}
+        columns["run_index"] = batch.run_index
+        columns |= {name: [label] * len(batch) for name, label in point.labels.items()}
+        columns |= {**batch.varied, **batch.metrics}
+        arrays = [
+            arrow.array(columns[field.name], type=field.type)
+            for field in self._schema
+            if field.name != "outcome"
+        ]
+        codes = arrow.array(_codes(batch))
+        arrays.append(arrow.DictionaryArray.from_arrays(codes, list(OUTCOMES)))
+        return arrow.Table.from_arrays(arrays, schema=self._schema)
+
+    def flaw(self, number: int, pieces: Sequence[Piece], points: Sequence[Point]) -> str | None:
+        """Say what is wrong with the file of a part, None where nothing is.
+
+        Every page is read against its checksum. What no checksum covers is compared with what
+        the same runs would be written as, where the same version of pyarrow wrote it.
+        """
+        parquet: Any = import_module("pyarrow.parquet")
+        try:
+            content = self.path(number).read_bytes()
+            source = import_module("pyarrow").BufferReader(content)
+            reader = parquet.ParquetFile(source, page_checksum_verification=True)
+            table = reader.read(use_threads=False)
+        except Exception as error:  # a damaged file may make anything of its reader
+            return f"can not be read ({_first_line(error)})"
+        if not table.schema.equals(self._schema):
+            return "has other columns"
+        if not _has_runs(table, pieces, points):
+            return "has other runs"
+        ours = _as_bytes(table)
+        if _writer_of(content) == _writer_of(ours) and content != ours:
+            return "is damaged"
+        return None
+
+    def column(self, name: str, number: int, piece: Piece) -> NDArray[Any]:
+        """Read a column of a piece; outcomes as their places among the outcomes."""
+        values = self._read(number, name, piece).slice(piece.offset, len(piece.rows))
+        if name != "outcome":
+            column: NDArray[Any] = values.to_numpy()
+            return column
+        chunks = [chunk.indices.to_numpy() for chunk in values.chunks]
+        return np.concatenate(chunks)
+
+    def _read(self, number: int, name: str, piece: Piece) -> Any:  # noqa: ANN401 - no stubs
+        """Read a column of a part; of small points, which share it, the part is kept as a whole."""
+        parquet: Any = import_module("pyarrow.parquet")
+        if len(piece.rows) >= LARGE:
+            return parquet.read_table(
+                self.path(number), columns=[name], use_threads=False, partitioning=None
+            )[name]
+        if self._kept[0] != number:
+            self._kept = (
+                number,
+                parquet.read_table(self.path(number), use_threads=False, partitioning=None),
+            )
+        return self._kept[1][name]
+
+
+def _as_bytes(table: Any) -> bytes:  # noqa: ANN401 - pyarrow has no type stubs
+    sink: Any = import_module("pyarrow").BufferOutputStream()
+    parquet: Any = import_module("pyarrow.parquet")
+    parquet.write_table(table.combine_chunks(), sink, write_page_checksum=True)
+    content: bytes = sink.getvalue().to_pybytes()
+    return content
+
+
+def _writer_of(content: bytes) -> str:
+    source = import_module("pyarrow").BufferReader(content)
+    return str(import_module("pyarrow.parquet").read_metadata(source).created_by)
+
+
+def _has_runs(table: Any, pieces: Sequence[Piece], points: Sequence[Point]) -> bool:  # noqa: ANN401
+    runs = [
+        p.runs[piece.rows.start : piece.rows.stop] for p, piece in zip(points, pieces, strict=True)
+    ]
+    numbers = [np.full(len(piece.rows), piece.point) for piece in pieces]
+    return np.array_equal(table["run_index"].to_numpy(), np.concatenate(runs)) and np.array_equal(
+        table["point"].to_numpy(), np.concatenate(numbers)
+    )
+
+
+def part_schema(labels: Mapping[str, str], varied: Sequence[str], metrics: Sequence[str]) -> Any:  # noqa: ANN401 - pyarrow has no type stubs
+    """Give the columns of a part: point and run, labels, what varies, metrics, outcome.
+
+    Parameters
+    ----------
+    labels : mapping
+        Names of what tells points apart -> the name of their type in pyarrow.
+    varied : sequence of str
+        Paths of what differs from run to run.
+    metrics : sequence of str
+        Recorded metrics.
+
+    Examples
+    --------
+    >>> part_schema({"disturbance.var": "double"}, [], ["peak_force_n"]).names
+    ['point', 'run_index', 'disturbance.var', 'peak_force_n', 'outcome']
+
+    """
+    arrow: Any = import_module("pyarrow")
+    texts = arrow.dictionary(arrow.int8(), arrow.string())
+    types: dict[str, Any] = {"point": arrow.int32(), "run_index": arrow.uint64()}
+    types |= {name: arrow.type_for_alias(alias) for name, alias in labels.items()}
+    types |= dict.fromkeys([*varied, *metrics], arrow.float64())
+    types["outcome"] = texts
+    return arrow.schema(
+        arrow.field(name, kind, nullable=False, metadata={"unit": unit_of(name)})
+        for name, kind in types.items()
+    )
+
+
+def label_types(points: Sequence[Point]) -> dict[str, str]:
+    """Give the name of the type, in pyarrow, of what tells points apart."""
+    return {name: _type_of([point.labels[name] for point in points]) for name in points[0].labels}
+
+
+def _type_of(levels: Sequence[Level]) -> str:
+    kinds = {type(level) for level in levels}
+    names = {bool: "bool", int: "int64", float: "double", str: "string"}
+    return names[kinds.pop()] if len(kinds) == 1 else "double"
+
+
+def _codes(batch: Batch) -> NDArray[np.int8]:
+    assert batch.outcome_codes is not None  # a study always asks for it
+    return batch.outcome_codes.astype(np.int8)
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).strip().split("\n")[0].rstrip(".")

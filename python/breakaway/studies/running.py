@@ -1,0 +1,269 @@
+"""Run a study: part by part, each written as it finishes, so that nothing finished is lost."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from breakaway._core import __version__
+from breakaway.errors import OutputError, StudyError
+from breakaway.output import output_folder, write_atomically
+from breakaway.studies.compare import ComparePlan
+from breakaway.studies.folder import SUMMARY, as_json, manifest_of, prepared
+from breakaway.studies.parts import Parts, Piece, label_types, laid_out
+from breakaway.studies.plan import Plan, PointRuns, Row, Summary
+from breakaway.studies.points import Point
+from breakaway.studies.result import StudyResult, open_study
+from breakaway.studies.robustness import RobustnessPlan
+from breakaway.studies.sensitivity import SensitivityPlan
+from breakaway.studies.study import (
+    CompareStudy,
+    RobustnessStudy,
+    SensitivityStudy,
+    Study,
+    SweepStudy,
+)
+from breakaway.studies.sweep import SweepPlan
+
+
+@dataclass(frozen=True)
+class StudyProgress:
+    """How far a study is."""
+
+    runs_done: int
+    """Runs that are done, those found on disk among them."""
+    runs_found: int
+    """Runs that were found on disk, done by an earlier process."""
+    runs_max: int
+    """Most runs that the study may take; a bisection may need fewer."""
+    doing: str
+    """What is run, in words."""
+
+
+def run_study(
+    study: Study,
+    out: str | Path,
+    *,
+    resume: bool = False,
+    threads: int | None = None,
+    progress: Callable[[StudyProgress], None] | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> StudyResult:
+    """Run a study into a folder, or go on with it.
+
+    The folder receives ``manifest.json`` first, then the parts as they finish, then the summary,
+    its tables and figures. A study that was ended, in whatever way, goes on with ``resume``:
+    finished parts are read and not computed again, and all files are the same bytes as those of a
+    study that was never ended.
+
+    Parameters
+    ----------
+    study : SweepStudy, RobustnessStudy, SensitivityStudy or CompareStudy
+        What is asked.
+    out : str or Path
+        The folder; made if it is missing.
+    resume : bool, optional
+        Whether to go on with a study that the folder holds. Without one, it begins.
+    threads : int, optional
+        Left out: one for each processor. The results do not depend on it.
+    progress : callable, optional
+        Called about 20 times a second with a `StudyProgress`.
+    notice : callable, optional
+        Called with a sentence when a damaged part is computed again.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    StudyError
+        The study contradicts itself, or the folder holds another one; nothing has run then.
+    OutputError
+        The folder can not be written, or the disk is full; finished parts stay.
+    KeyboardInterrupt
+        Ctrl-C; finished parts stay.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import breakaway as bk
+    >>> study = SweepStudy(
+    ...     scenario="paper_as_computed",
+    ...     changes={"disturbance.var": 0.1, "timing.duration_s": 0.01},
+    ...     runs=20,
+    ... )
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     run_study(study, folder).summary["result"]
+    ['0 of 20 runs released, at 1 point of 20 each']
+
+    """
+    plan = plan_of(study)
+    for point in plan.points:
+        point.check()
+    folder = Path(out)
+    with prepared(folder, manifest_of(study, plan), resume=resume):
+        parts = Parts(folder, label_types(plan.points), plan.varied, study.recorded)
+        runner = _Runner(study, plan, parts, threads, progress, notice)
+        try:
+            summary = plan.conduct(runner.run)
+            runner.remove_beyond()
+            _write_end(study, plan, summary, runner.runs_done, folder)
+        except OutputError as error:
+            raise OutputError(f"{error}; finished parts stay: go on with --resume") from None
+    return open_study(folder)
+
+
+def plan_of(study: Study) -> Plan:
+    """Give the way in which a study is run.
+
+    Raises
+    ------
+    StudyError
+        The study can not be run as it is.
+
+    """
+    match study:
+        case SweepStudy():
+            return SweepPlan(study)
+        case RobustnessStudy():
+            return RobustnessPlan(study)
+        case SensitivityStudy():
+            return SensitivityPlan(study)
+        case CompareStudy():
+            return ComparePlan(study)
+    raise StudyError(f"study: {type(study).__name__} is none; load one with load_study")
+
+
+class _Runner:
+    """Runs points in parts, numbered as they come; what is on disk already is not run."""
+
+    def __init__(
+        self,
+        study: Study,
+        plan: Plan,
+        parts: Parts,
+        threads: int | None,
+        progress: Callable[[StudyProgress], None] | None,
+        notice: Callable[[str], None] | None,
+    ) -> None:
+        self.runs_done = 0
+        self._study, self._plan, self._parts, self._threads = study, plan, parts, threads
+        self._progress, self._notice = progress, notice
+        self._runs_found = 0
+        self._next_part = 0
+        self._next_point = 0
+        self._doing = ""
+
+    def run(self, points: Sequence[Point], doing: str) -> list[PointRuns]:
+        """Run points to their end."""
+        self._doing = doing
+        first = self._next_point
+        self._next_point += len(points)
+        pieces: list[list[tuple[int, Piece]]] = [[] for _ in points]
+        for layout in laid_out(points, first, self._study.runs_per_part):
+            self._finish(layout, [points[piece.point - first] for piece in layout])
+            for piece in layout:
+                pieces[piece.point - first].append((self._next_part, piece))
+            self._next_part += 1
+        return [PointRuns(p, found, self._parts) for p, found in zip(points, pieces, strict=True)]
+
+    def remove_beyond(self) -> None:
+        """Remove parts that do not belong to the study, which only a damaged one can have left."""
+        for path in self._parts.remove_beyond(self._next_part):
+            self._say(f"{path.name} does not belong to the study and was removed")
+
+    def _finish(self, layout: Sequence[Piece], points: Sequence[Point]) -> None:
+        """See that a part is on disk."""
+        runs = sum(len(piece.rows) for piece in layout)
+        number = self._next_part
+        if self._parts.path(number).exists():
+            flaw = self._parts.flaw(number, layout, points)
+            if flaw is None:
+                self._runs_found += runs
+                self.runs_done += runs
+                self._report(0)
+                return
+            self._say(f"{self._parts.path(number).name} {flaw}; its {runs} runs are computed again")
+        self._compute(number, layout, points)
+
+    def _compute(self, number: int, layout: Sequence[Piece], points: Sequence[Point]) -> None:
+        batches = []
+        before = 0
+        for piece, point in zip(layout, points, strict=True):
+            batch = point.simulate(
+                piece.rows,
+                metrics=self._study.recorded,
+                threads=self._threads,
+                progress=self._reporter(before),
+            )
+            before += len(piece.rows)
+            batches.append((piece, point, batch))
+            self._report(before)
+        self._parts.write(number, batches)
+        self.runs_done += before
+
+    def _reporter(self, before: int) -> Callable[[int, int], None]:
+        return lambda done, _: self._report(before + done)
+
+    def _report(self, in_part: int) -> None:
+        if self._progress:
+            self._progress(
+                StudyProgress(
+                    runs_done=self.runs_done + in_part,
+                    runs_found=self._runs_found,
+                    runs_max=self._plan.runs_max,
+                    doing=self._doing,
+                )
+            )
+
+    def _say(self, sentence: str) -> None:
+        if self._notice:
+            self._notice(sentence)
+
+
+def _write_end(study: Study, plan: Plan, summary: Summary, runs: int, folder: Path) -> None:
+    """Write tables, figures, the study itself, and last the summary, which says that it is done."""
+    content = {
+        "kind": study.kind,
+        "name": study.name,
+        "scenario": study.base.name,
+        "seed": study.base.seed,
+        "runs": runs,
+        "breakaway_version": __version__,
+        "result": summary.result,
+        "notes": summary.notes,
+        **summary.facts,
+        "tables": summary.tables,
+    }
+    with output_folder(folder) as staging:
+        for name, rows in summary.tables.items():
+            (staging / f"{name}.csv").write_text(_csv(rows), encoding="utf-8", newline="")
+        how = "# The whole study, its scenario within. Runs again: breakaway study study.toml\n\n"
+        text = how + tomli_w.dumps(study.model_dump(exclude_none=True))
+        (staging / "study.toml").write_text(text, encoding="utf-8", newline="\n")
+        for name, figure in plan.draw_figures(study, summary).items():
+            _save(figure, staging / name)
+    write_atomically(folder / SUMMARY, as_json(content))
+
+
+def _save(figure: Any, path: Path) -> None:  # noqa: ANN401 - a figure of matplotlib
+    from breakaway.plots.style import save_figure
+
+    for suffix in (".png", ".svg"):
+        save_figure(figure, path.with_suffix(suffix))
+
+
+def _csv(rows: Sequence[Row]) -> str:
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    text = StringIO()
+    writer = csv.DictWriter(text, names, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
