@@ -1,21 +1,35 @@
-"""Draw the picture of the README: the paper's extraction."""
+"""Draw the pictures of the README: the paper's extraction, and figure 10 from a full run."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import breakaway as bk
 from breakaway.plots.style import save_figure
+from breakaway.reproduction.figure_10 import draw_figure_10
+from breakaway.reproduction.survey import read_survey
 
-IMAGES = Path(__file__).parents[1] / "docs" / "images"
+ROOT = Path(__file__).parents[1]
+IMAGES = ROOT / "docs" / "images"
+FULL_RUN = ROOT / "out" / "reproduction"
 
 
-def main() -> None:
-    """Simulate the preset and save its figure."""
+def main(full_run: Path) -> None:
+    """Simulate the preset and save its figure; draw figure 10 where a full run has its data.
+
+    ``full_run`` is what ``breakaway reproduce --full --out`` was given.
+    """
     IMAGES.mkdir(parents=True, exist_ok=True)
     run = bk.simulate(bk.load_scenario("paper_as_computed"))
     save_figure(run.plot(), IMAGES / "extraction.png")
+    try:
+        ranges = read_survey(full_run / "figure_10")
+    except bk.StudyError as error:
+        print(f"figure_10.png stays as it is: {error}")
+        return
+    save_figure(draw_figure_10(ranges), IMAGES / "figure_10.png")
 
 
 if __name__ == "__main__":
-    main()
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else FULL_RUN)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 import shutil
@@ -13,19 +14,25 @@ import pytest
 
 from breakaway.errors import OutputError
 from breakaway.report.reproduction import reproduce
-from breakaway.reproduction import runs as simulations
 from breakaway.reproduction.rows import printed_row
+from breakaway.reproduction.survey import DisturbanceRange
 from breakaway.reproduction.tables import TABLE_2, table_2
 
 
 @pytest.fixture(scope="module")
-def out(tmp_path_factory):
+def out(tmp_path_factory, simulated):
     folder = tmp_path_factory.mktemp("reproduction")
-    told: list[str] = []
-    done = reproduce(folder, told.append)
+    runs, _ = simulated
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("breakaway.report.reproduction.simulate_all", lambda *_: runs)
+        done = reproduce(folder)
     assert done.report_path == folder / "report.html"
-    assert len(told) > 3
     return folder
+
+
+def test_it_tells_what_it_is_at(simulated):
+    _, told = simulated
+    assert len(told) > 3
 
 
 @pytest.fixture(scope="module")
@@ -91,6 +98,22 @@ def test_figure_10_has_a_band_and_its_definition(values):
     assert "diverged" in explained and "uniform" in explained
 
 
+def test_figure_10_is_a_table_too(out, values):
+    text = (out / "figure_10.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(text.splitlines()))
+    data = values["figures"]["figure_10"]["data"]
+    assert set(data) == {row["control"] for row in rows}
+    for control, column in data.items():
+        ours = [row for row in rows if row["control"] == control]
+        assert [float(row["var"]) for row in ours] == column["var"]
+        for name in ("released", "diverged", "iae_median_m_s", "diverged_upper_bound"):
+            shown = ["" if value is None else str(value) for value in column[name]]
+            assert [row[name] for row in ours] == shown
+    literal = data["with_vibration"]
+    assert literal["diverged"] == [literal["runs"]] * len(literal["var"])
+    assert set(literal["iae_median_m_s"]) == {None}
+
+
 def test_simulated_curves_lie_on_the_equations(values):
     figures = values["figures"]
     assert figures["figure_2b"]["data"]["largest_relative_difference"] < 1e-6
@@ -128,7 +151,7 @@ def test_the_page_needs_nothing_else(out):
     page.feed(text)
     outside = [t for t in page.targets if not t.startswith("#")]
     assert not outside
-    sections = {"glance", "figures", "tables", "disagree", "made"}
+    sections = {"glance", "figures", "levels", "tables", "disagree", "made"}
     assert sections <= set(page.ids)
     for target in page.targets:
         assert target[1:] in page.ids, target
@@ -173,7 +196,7 @@ def test_an_unwritable_folder_is_told_and_left_alone(tmp_path):
 
 
 def test_an_interrupted_reproduction_leaves_nothing_behind(tmp_path, monkeypatch):
-    def interrupted(_):
+    def interrupted(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("breakaway.report.reproduction.simulate_all", interrupted)
@@ -186,9 +209,9 @@ def test_a_range_is_not_stable_beyond_its_first_failure():
     var = np.array([0.0, 0.1, 0.2])
 
     def survey(stable):
-        return simulations.DisturbanceRange(
-            var, *(np.zeros((3, 5)),) * 3, np.array(stable), np.array([5, 5, 5]), 5
-        )
+        diverged = 5 - np.array(stable)
+        counts = {"diverged": diverged, "released": 5 - diverged}
+        return DisturbanceRange(var, *(np.zeros((3, 5)),) * 3, counts, 5)
 
     assert survey([5, 5, 5]).largest_stable_var == 0.2
     assert survey([5, 4, 5]).largest_stable_var == 0.0

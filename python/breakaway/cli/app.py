@@ -128,4 +128,10 @@ app.command(
 app.command(epilog=_examples("breakaway schema", "breakaway schema --out scenario.schema.json"))(
     schema
 )
-app.command(epilog=_examples("breakaway reproduce", "breakaway reproduce --out paper"))(reproduce)
+app.command(
+    epilog=_examples(
+        "breakaway reproduce",
+        "breakaway reproduce --out paper",
+        "breakaway reproduce --full --out paper  # figure 10 in minutes, not seconds",
+    )
+)(reproduce)

@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from breakaway.cli.show import Sheet, say
+
+if TYPE_CHECKING:
+    from breakaway.report.reproduction import Reproduction
+    from breakaway.studies import StudyProgress
 
 
 def reproduce(
     out: Annotated[
         Path, typer.Option(help="Folder for the report, its figures and tables.", metavar="DIR")
     ] = Path("reproduction"),
+    full: Annotated[
+        bool,
+        typer.Option("--full", help="Figure 10 from 10,000 runs at each of 20 levels; minutes."),
+    ] = False,
 ) -> None:
     """Reproduce the paper's results, and tell where they differ from what it prints.
 
-    The last line of the output is the path of the report.
+    The last line of the output is the path of the report. With --full, levels
+    of figure 10 are kept in DIR/figure_10 as they finish: after Ctrl-C the same
+    command goes on where it was.
     """
     from breakaway.report.reproduction import reproduce as reproduce_paper
 
-    done = reproduce_paper(out, _progress)
+    done = _in_full(out) if full else reproduce_paper(out, _progress)
     header = [str(name) for name in done.header]
     shown = Sheet("", header, prose=header[:-1])
     for row in done.table:
@@ -29,5 +43,52 @@ def reproduce(
     say(shown, str(done.report_path))
 
 
+def _in_full(out: Path) -> Reproduction:
+    from breakaway.report.reproduction import reproduce as reproduce_paper
+    from breakaway.reproduction.survey import FullSurvey
+
+    try:
+        with _shown_progress() as report:
+            full = FullSurvey(progress=report, notice=_progress)
+            return reproduce_paper(out, _progress, full)
+    except KeyboardInterrupt:
+        if (out / "figure_10").exists():
+            _progress(
+                f"finished levels are kept; go on with: breakaway reproduce --full --out {out}"
+            )
+        raise
+
+
 def _progress(step: str) -> None:
     typer.echo(step, err=True)
+
+
+@contextmanager
+def _shown_progress() -> Iterator[Callable[[StudyProgress], None] | None]:
+    """Show on a terminal how far the runs are: bar, rate, time left; in pipes nothing."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    from breakaway.cli.study import progress_in_words
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=None),
+        TextColumn("{task.percentage:>3.0f} %  {task.fields[told]}", markup=False),
+    )
+    bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    task = bar.add_task("", total=None, told="")
+    began = time.monotonic()
+
+    def report(at: StudyProgress) -> None:
+        told = progress_in_words(at, time.monotonic() - began)
+        bar.update(task, completed=at.runs_done, total=at.runs_max, description=at.doing, told=told)
+        bar.start() if at.runs_done < at.runs_max else bar.stop()
+
+    try:
+        yield report
+    finally:
+        bar.stop()

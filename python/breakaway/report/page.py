@@ -22,6 +22,7 @@ def render(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the
     )
     environment.filters["inline_svg"] = inline_svg
     environment.filters["decimal"] = decimal_number
+    environment.filters["digits"] = significant
     return environment.get_template(template).render(**context)
 
 
@@ -44,3 +45,8 @@ def inline_svg(path: Path) -> Markup:
 def decimal_number(value: float, places: int) -> str:
     """A number with a given number of decimal places."""
     return f"{value:,.{places}f}"
+
+
+def significant(value: float | None, factor: float = 1.0) -> str:
+    """A number times a factor, with three significant digits; a dash where there is none."""
+    return "–" if value is None else f"{value * factor:.3g}"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +20,8 @@ from breakaway.reproduction.findings import (
     table_1_and_table_2,
 )
 from breakaway.reproduction.rows import Row
-from breakaway.reproduction.runs import SEEDS, VAR_LEVELS, simulate_all
+from breakaway.reproduction.runs import Runs, simulate_all
+from breakaway.reproduction.survey import CONFIDENCE, NAMES, DisturbanceRange, FullSurvey
 from breakaway.reproduction.tables import table_1, table_2
 
 VERDICT = {True: "agrees", False: "differs", None: "not in the paper"}
@@ -38,11 +40,15 @@ class Reproduction:
     """The summary: finding, paper, ours, verdict."""
 
 
-def reproduce(out: Path, progress: Callable[[str], None] = lambda _: None) -> Reproduction:
+def reproduce(
+    out: Path,
+    progress: Callable[[str], None] = lambda _: None,
+    full: FullSurvey | None = None,
+) -> Reproduction:
     """Reproduce the paper's tables and figures into a folder.
 
-    Writes ``report.html`` (self-contained), ``reproduction.json`` and each figure as SVG and PNG;
-    all of them or none.
+    Writes ``report.html`` (self-contained), ``reproduction.json``, each figure as SVG and PNG, and
+    the data of figure 10 as CSV; all of them or none.
 
     Parameters
     ----------
@@ -50,23 +56,32 @@ def reproduce(out: Path, progress: Callable[[str], None] = lambda _: None) -> Re
         The folder; made if it does not exist.
     progress : callable, optional
         Called with a few words before each part of the work.
+    full : FullSurvey, optional
+        Figure 10 from many runs, which are kept in the folder ``figure_10`` level by level; those
+        that are there are not computed again. Left out: from few runs.
 
     Raises
     ------
+    StudyError
+        The folder holds figure 10 with other settings or of another version.
     OutputError
         The folder can not be written.
 
     """
     rows = [*table_1(), *table_2()]
     from_table_1 = table_2("paper_as_printed", key="table2_from_table1")
+    ranges = None
+    if full is not None:
+        progress(f"figure 10: {len(full.levels)} levels x {full.seeds:,} runs of each control")
+        ranges = full.run(out / "figure_10")
     with output_folder(out) as staging:
-        runs = simulate_all(progress)
+        runs = simulate_all(progress, ranges)
         findings = [*misprints(), table_1_and_table_2(from_table_1), *simulated(runs)]
         progress("figures and report")
         figures = draw_all(runs)
         _save_figures(figures, staging)
         glance = _at_a_glance(rows, from_table_1, findings)
-        page = _page(rows, from_table_1, findings, figures, glance, runs.oracle.seed, staging)
+        page = _page(rows, from_table_1, findings, figures, glance, runs, staging)
         (staging / "report.html").write_text(page, encoding="utf-8")
         values = _json(rows + from_table_1, findings, figures)
         (staging / "reproduction.json").write_text(
@@ -108,6 +123,15 @@ def _save_figures(figures: Sequence[ReproducedFigure], folder: Path) -> None:
     for figure in figures:
         for kind in ("svg", "png"):
             save_figure(figure.drawing, folder / f"{figure.key}.{kind}")
+        if figure.table:
+            _save_table(figure.table, folder / f"{figure.key}.csv")
+
+
+def _save_table(table: Sequence[Mapping[str, object]], path: Path) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
 
 
 def _page(
@@ -116,7 +140,7 @@ def _page(
     findings: Sequence[Finding],
     figures: Sequence[ReproducedFigure],
     glance: Sequence[Row],
-    seed: int,
+    runs: Runs,
     folder: Path,
 ) -> str:
     tables = [
@@ -146,9 +170,12 @@ def _page(
         figures=figures,
         tables=tables,
         findings=findings,
-        seed=seed,
+        seed=runs.oracle.seed,
         folder=folder,
         method=_method(),
+        survey=runs.ranges,
+        names=NAMES,
+        definition=_definition(runs.ranges["without_vibration"]),
     )
 
 
@@ -160,9 +187,29 @@ def _method() -> list[str]:
         "against Runge-Kutta at 0.1 µs. The bounded loop with vibration is chaotic: single runs "
         "depend on the step; medians over runs are what is quoted.",
         "Disturbance: joint force times 1 + var w, w uniform on [-1, 1], redrawn every 0.1 ms.",
-        f"Figure 10: {len(VAR_LEVELS)} levels of var, runs 0 to {SEEDS - 1} at each.",
         "Diverged: |e| above l_f / 2, |F| above 20 F_s0, or not a number. Released: within 1 µm of "
         "the end of the guide, since the reference ends there and is approached from below.",
+    ]
+
+
+def _definition(survey: DisturbanceRange) -> list[str]:
+    """Say what figure 10 counts, and how."""
+    return [
+        f"Runs: {len(survey.var)} levels of var, run numbers 0 to {survey.runs - 1:,} at each. All "
+        "levels and controls have the same draws w, so their differences are not blurred by other "
+        "draws, and levels are not independent of each other. At var = 0 nothing is drawn: all "
+        "runs are the same one.",
+        "Disturbance: joint force times 1 + var w, w uniform on [-1, 1], redrawn every 0.1 ms and "
+        "held between. The paper names neither law, rate, nor number of runs.",
+        "A run ends as diverged (|e| above l_f / 2, |F| above 20 F_s0, or not a number), as "
+        "released (within 1 µm of the end of the guide), or, at 0.5 s, as not released. The paper "
+        "does not say what it calls unstable.",
+        "IAE: integral of |e| over the 0.5 s of the run, quantiles over the runs that did not "
+        "diverge, released or not.",
+        f"Upper bounds: one-sided, Clopper and Pearson, at {100 * CONFIDENCE:g} % confidence, "
+        "each level by itself.",
+        "Vibration: as printed it diverges at every level, so its IAE is not drawn; what is "
+        "drawn is the bounded reading, whose three additions are not in the paper.",
     ]
 
 

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.design.stability import stability
+from breakaway.reproduction.figure_10 import PRINTED_VAR
 from breakaway.reproduction.rows import Row
 from breakaway.reproduction.runs import Runs
+from breakaway.reproduction.survey import CONFIDENCE, DisturbanceRange
 from breakaway.reproduction.tables import designed
 from breakaway.run import Run
 from breakaway.scenario.files import load_scenario
@@ -104,8 +106,8 @@ def simulated(runs: Runs) -> list[Finding]:
         _known_value(runs),
         _limit_cycle(runs),
         _as_printed(runs),
-        _stable_range(runs, "without_vibration", 0.125),
-        _stable_range(runs, "with_vibration", 0.085),
+        _stable_range(runs, "without_vibration"),
+        _stable_range(runs, "with_vibration"),
         _smoother(runs),
         _jolt(runs),
     ]
@@ -168,7 +170,7 @@ def _limit_cycle(runs: Runs) -> Finding:
         f"{oscillation_hz(run, 0.03, 0.12):.0f} Hz, peak {run.metrics.peak_force_n:.0f} N",
         None,
         "The friction curve falls by up to 858 N s/m at 0.064 m/s, more than kd damps. It is no "
-        "numerical artefact: Runge-Kutta at 0.1 µs gives "
+        "numerical artifact: Runge-Kutta at 0.1 µs gives "
         f"{oscillation_hz(runs.oracle, 0.03, 0.12):.0f} Hz and "
         f"{runs.oracle.metrics.peak_force_n:.0f} N.",
     )
@@ -197,14 +199,18 @@ def _as_printed(runs: Runs) -> Finding:
     )
 
 
-def _stable_range(runs: Runs, control: str, printed: float) -> Finding:
-    ours = runs.ranges[control].largest_stable_var
-    top = runs.ranges[control].var[-1]
+def _stable_range(runs: Runs, control: str) -> Finding:
+    survey, printed = runs.ranges[control], PRINTED_VAR[control]
+    ours, top = survey.largest_stable_var, survey.var[-1]
     found = "none: it diverges undisturbed" if ours is None else _survived(ours, top)
+    found += f"; {_diverged_near(survey, printed)}"
     if control == "with_vibration":
         bounded = runs.ranges["with_vibration_bounded"]
-        found += f"; the reading that stays bounded: {_survived(bounded.largest_stable_var, top)}"
-        found += f", but it released only {bounded.released.min()} of {bounded.runs} at the worst"
+        found += (
+            f"; the reading that stays bounded: {_survived(bounded.largest_stable_var, top)}; "
+            f"{_diverged_near(bounded, printed)}; it released "
+            f"{bounded.released.min():,} of {bounded.runs:,} at the worst level"
+        )
     return Finding(
         f"largest_stable_var_{control}",
         f"The largest survived disturbance {control.replace('_', ' ')} is not the printed one",
@@ -212,10 +218,20 @@ def _stable_range(runs: Runs, control: str, printed: float) -> Finding:
         found,
         "none, diverges at 0" if ours is None else _survived(ours, top),
         ours == printed,
-        f"Survived means: none of {runs.ranges[control].runs} runs at this level or any below it "
+        f"Survived means: none of {survey.runs:,} runs at this level or any below it "
         "diverged (|e| above l_f / 2 or |F| above 20 F_s0); w uniform on [-1, 1], redrawn every "
         "0.1 ms. The paper names neither distribution, nor rate, nor number of runs.",
     )
+
+
+def _diverged_near(survey: DisturbanceRange, printed: float) -> str:
+    """Say how many runs diverged at the level nearest to a printed limit."""
+    row = survey.rows()[survey.level(printed)]
+    bound = row["diverged_upper_bound"]
+    said = f"{row['diverged']:,} of {row['runs']:,} diverged at var = {row['var']:.1%}"
+    if bound is None or bound == 1.0:
+        return said
+    return f"{said}, a probability of at most {bound:.2g} at {100 * CONFIDENCE:g} % confidence"
 
 
 def _survived(var: float | None, largest_tried: float) -> str:
@@ -225,7 +241,7 @@ def _survived(var: float | None, largest_tried: float) -> str:
 
 
 def _smoother(runs: Runs) -> Finding:
-    level = int(np.flatnonzero(runs.ranges["without_vibration"].var == 0.05)[0])
+    level = runs.ranges["without_vibration"].level(0.05)
     plain, pulsed = (
         runs.ranges[control] for control in ("without_vibration", "with_vibration_bounded")
     )
@@ -242,10 +258,10 @@ def _smoother(runs: Runs) -> Finding:
         "vibration_does_not_lower_the_force",
         "Vibration does not lower the force amplitude here",
         "the force with vibration is smoother, its amplitude lower",
-        f"var = 5 %, median and 5 to 95 % of {plain.runs} runs: peak force {peak}; largest jump "
-        f"{jump}; IAE {iae}",
-        f"median peak {np.median(pulsed.peak_force_n[level]):.0f} N with, "
-        f"{np.median(plain.peak_force_n[level]):.0f} N without",
+        f"var = {plain.var[level]:.3g}, median and 5 to 95 % of {plain.runs:,} runs: "
+        f"peak force {peak}; largest jump {jump}; IAE {iae}",
+        f"median peak {np.nanmedian(pulsed.peak_force_n[level]):.0f} N with, "
+        f"{np.nanmedian(plain.peak_force_n[level]):.0f} N without",
         False,
         "Each pulse throws the part ahead of the reference; the PID's output then turns negative, "
         "which a tip that only pushes can not follow, and the part waits. This loop is chaotic: "
@@ -269,7 +285,7 @@ def _jolt(runs: Runs) -> Finding:
         f"{on_level.metrics.final_position_m * 1e3:.4f} mm with it on the friction level only",
         f"{on_force.metrics.final_position_m * 1e3:.1f} mm in 4 s at var = 30 %",
         None,
-        "Each redraw rescales the elastic force of a stuck joint and jolts it. The artefact "
+        "Each redraw rescales the elastic force of a stuck joint and jolts it. The artifact "
         "flatters every force; the option acts_on = 'friction_level' is without it.",
     )
 

@@ -1,0 +1,14 @@
+"""What the tests of the reproduction share: its simulations, done once."""
+
+from __future__ import annotations
+
+import pytest
+
+from breakaway.reproduction.runs import simulate_all
+
+
+@pytest.fixture(scope="session")
+def simulated():
+    """Everything that the reproduction simulates, and what it told on the way."""
+    told: list[str] = []
+    return simulate_all(told.append), told
