@@ -50,7 +50,7 @@ def from_python() -> dict[str, float]:
     scenario = bk.load_scenario("paper_as_computed")
     job, _ = core_columns(with_nominal_controller(scenario), {})
     runs, figures = 512, ["iae_m_s"]
-    run_index = np.arange(runs, dtype=np.uint64).tobytes()
+    run_index = np.arange(runs, dtype=np.uint64)
     widest = _core.instructions()[0]
 
     def kernel_alone() -> None:
@@ -69,13 +69,15 @@ def from_python() -> dict[str, float]:
     }
 
 
-MEMORY_PROGRAM = """
-import resource, sys
+MEMORY_PROGRAM = r"""
+import re, sys
+from pathlib import Path
 import breakaway as bk
 runs = int(sys.argv[1])
 scenario = bk.load_scenario("paper_as_computed").with_({"timing.duration_s": 1e-4})
 bk.simulate_many(scenario, runs=runs, metrics=["iae_m_s"])
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+peak = re.search(r"VmHWM:\s+(\d+)", Path("/proc/self/status").read_text())
+print(int(peak[1]) * 1024)
 """
 
 

@@ -3,6 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 __version__: str
 
 def run_one(
@@ -20,8 +23,8 @@ OUTCOMES: Sequence[str]
 
 def run_many(
     job: Mapping[str, Any],
-    runs: bytes,
-    varied: Sequence[tuple[int, bytes]],
+    runs: NDArray[np.uint64],
+    varied: Sequence[tuple[int, NDArray[np.float64]]],
     figures: Sequence[str],
     outcome: bool,
     threads: int,
@@ -30,4 +33,4 @@ def run_many(
 ) -> tuple[dict[str, bytes], bytes]: ...
 def instructions() -> list[str]: ...
 def number_place(job: Mapping[str, Any]) -> int: ...
-def fractions(seed: int, runs: bytes, part: int) -> bytes: ...
+def fractions(seed: int, runs: NDArray[np.uint64], part: int) -> bytes: ...

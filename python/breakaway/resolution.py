@@ -104,9 +104,8 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
     controller = values["controller"]
     for gains in _gain_tables(controller):
         del gains["kind"]
-    pid = controller.get("pid", controller)
-    if isinstance(pid["derivative_filter_s"], float) and pid["derivative_filter_s"] == 0.0:
-        pid["derivative_filter_s"] = None
+    _leave_out_zero(controller.get("pid", controller), "derivative_filter_s")
+    _leave_out_zero(joint, "viscous_n_s_per_m")
     disturbance = values["disturbance"]
     law = {"kind": disturbance.pop("law")}
     if "bandwidth_hz" in disturbance:
@@ -130,6 +129,12 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
         "run": run,
         "trace_every": resolved.trace.every_samples,
     }
+
+
+def _leave_out_zero(values: dict[str, Any], name: str) -> None:
+    """Say that there is none, where it is a number and zero: the core is faster without."""
+    if isinstance(values.get(name), float) and values[name] == 0.0:
+        values[name] = None
 
 
 def _gain_tables(controller: dict[str, Any]) -> list[dict[str, Any]]:

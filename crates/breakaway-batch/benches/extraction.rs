@@ -12,13 +12,13 @@ use breakaway_batch::yardstick::{iae_by_hand, iae_of_one_by_hand};
 use breakaway_batch::{Batch, FIGURES, Figure, Instructions, Job, Wanted, run, run_batch};
 use breakaway_core::test_models::{paper_as_computed, paper_limits};
 
-/// 0.1 simulated seconds at 100 kHz.
-const SAMPLES: u64 = 10_000;
-const SIMULATED_S: f64 = 0.1;
+/// 0.5 simulated seconds at 100 kHz.
+const SAMPLES: u64 = 50_000;
+const SIMULATED_S: f64 = 0.5;
 /// Turns that each case takes.
-const TURNS: usize = 150;
+const TURNS: usize = 100;
 /// Packs of lanes for each thread.
-const PACKS: usize = 8;
+const PACKS: usize = 2;
 
 /// A case: its name, the runs it computes, and how.
 struct Case {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use breakaway_core::actuator::Actuator;
 use breakaway_core::control::{Controller, Pid};
 use breakaway_core::extraction::Timing;
-use breakaway_core::joint::Joint;
+use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::reference::{Reference, Setpoint};
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
@@ -265,10 +265,12 @@ fn plain_kinds<V: Wide>(extraction: &Extraction<V>) -> Option<Extraction<V>> {
     let Extraction { joint, controller, actuator, timing, .. } = *extraction;
     match (joint, controller, actuator) {
         (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
-            if pid.is_plain() && timing.is_every_period_once() =>
+            if joint.viscous_n_s_per_m.is_none()
+                && pid.is_plain()
+                && timing.is_every_period_once() =>
         {
             Some(Extraction {
-                joint: Joint::Lugre(joint),
+                joint: Joint::Lugre(Lugre { viscous_n_s_per_m: None, ..joint }),
                 controller: Controller::Pid(Pid::plain(pid.gains)),
                 actuator: Actuator::Ideal,
                 timing: Timing::every_period_once(timing.control_period_s),
@@ -280,7 +282,7 @@ fn plain_kinds<V: Wide>(extraction: &Extraction<V>) -> Option<Extraction<V>> {
 }
 
 /// How many samples go by between two looks at bounds and at whether to go on.
-const BLOCK: u64 = 1024;
+const BLOCK: u64 = 4096;
 
 /// What moves.
 #[derive(Clone, Copy)]

@@ -3,7 +3,7 @@
 use breakaway_core::actuator::Actuator;
 use breakaway_core::control::{Controller, Pid};
 use breakaway_core::extraction::{Sample, Timing};
-use breakaway_core::joint::Joint;
+use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
 
@@ -92,10 +92,12 @@ fn run_loop<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<R
     let extraction = job.extraction;
     match (extraction.joint, extraction.controller, extraction.actuator, extraction.timing) {
         (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal, timing)
-            if pid.is_plain() && timing.is_every_period_once() =>
+            if joint.viscous_n_s_per_m.is_none()
+                && pid.is_plain()
+                && timing.is_every_period_once() =>
         {
             let extraction = Extraction {
-                joint: Joint::Lugre(joint),
+                joint: Joint::Lugre(Lugre { viscous_n_s_per_m: None, ..joint }),
                 controller: Controller::Pid(Pid::plain(pid.gains)),
                 actuator: Actuator::Ideal,
                 timing: Timing::every_period_once(timing.control_period_s),

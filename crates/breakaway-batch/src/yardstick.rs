@@ -90,7 +90,7 @@ fn bare<V: Wide>(e: &Extraction<V>, samples: u64) -> V {
         let force = kd.mul_add(rate - v, kp.mul_add(error, integral));
         let x_mid = k.mul_add(v, x);
         let w = q.mul_add(force, v);
-        let ahead = q.mul_add(force - r, v);
+        let ahead = (-q).mul_add(r, w);
         let (fraction, power) = (ahead * ahead * sharpness).exp2_parts();
         let level = slope.mul_add(x_mid, f_c);
         let g = fraction.mul_add(peak_slope.mul_add(x_mid, peak) * power, level);

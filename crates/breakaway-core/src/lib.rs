@@ -16,7 +16,7 @@
 //! use breakaway_core::joint::{Joint, Lugre};
 //! let joint = Joint::Lugre(Lugre {
 //!     stiction_n: 450.0, coulomb_n: 360.0, stiffness_n_per_m: 3.6e7, damping_n_s_per_m: 9000.0,
-//!     viscous_n_s_per_m: 0.0, stribeck_velocity_m_per_s: 0.09, engagement_length_m: 0.1,
+//!     viscous_n_s_per_m: None, stribeck_velocity_m_per_s: 0.09, engagement_length_m: 0.1,
 //!     residual_n: 9.81,
 //! });
 //! // Halfway out, half of the contact area is left: equation (5).

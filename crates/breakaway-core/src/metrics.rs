@@ -257,8 +257,9 @@ impl<R: Real> Metrics<R> {
             self.count_error(sample.time_s, period_s, where_it_holds(bounded, error));
         }
         if wanted.extremes {
-            let force = sample.applied_force_n.abs();
+            let error = sample.reference_m - sample.position_m;
             self.largest_error_m = larger_where(was_bounded, error, self.largest_error_m);
+            let force = sample.applied_force_n;
             self.peak_force_n = larger_where(was_bounded, force, self.peak_force_n);
         }
         if wanted.force | wanted.impacts | wanted.jump {
@@ -367,10 +368,10 @@ fn where_it_holds<R: Real>(mask: R::Mask, value: R) -> R {
     R::select(mask, value, R::zero())
 }
 
-/// The order matters: what is not a number is passed over.
+/// The largest magnitude so far; what is not a number is passed over.
 #[inline(always)]
 fn larger_where<R: Real>(mask: R::Mask, value: R, largest: R) -> R {
-    R::select(mask, value.max(largest), largest)
+    R::select(mask, value.max_abs(largest), largest)
 }
 
 impl Metrics<f64> {

@@ -100,8 +100,8 @@ impl<R: Real> Plant<'_, R> {
     /// Multiplying through by g leaves one division; collecting powers of g leaves the shortest
     /// chain after the exponential in g, which is what a single run waits for, and coefficients
     /// that change at a redraw only. R_m = (w − v_m) / q is the joint force of the first line. A
-    /// part whose middle is beyond the guide moves by w alone. Derivation and error constants:
-    /// `docs/derivations/linearly_implicit_midpoint.md`.
+    /// part whose middle is beyond the guide moves by w alone; its R_m is zero, and its bristle relaxes.
+    /// Derivation and error constants: `docs/derivations/linearly_implicit_midpoint.md`.
     #[inline(always)]
     fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, h: R) -> R {
         let (v, z) = (state.velocity_m_per_s, state.bristle_m);
@@ -111,33 +111,35 @@ impl<R: Real> Plant<'_, R> {
         let n = self.factors.joint_force;
         let q = k_over_m * n;
         let w = k_over_m.mul_add(self.force_n, v);
-        let held_back = (-q).mul_add(state.joint_force_n, v);
-        let v_predicted = k_over_m.mul_add(self.force_n, held_back);
+        let v_predicted = (-q).mul_add(state.joint_force_n, w);
         let level = self.factors.friction_level;
         let b = self.joint.freeze(&state.joint(), x_mid, v_predicted, level);
 
         let g = b.friction_level_n;
-        let (k_e, c) = (b.stiffness_n_per_m, b.damping_n_s_per_m);
-        let viscous = q.mul_add(b.viscous_n_s_per_m, R::one());
-        let c_over_k = c / k;
-        let per_level = (q * k * b.stretch).mul_add(k_e + c_over_k, viscous);
+        let (k_e, c_over_k) = (b.stiffness_n_per_m, b.damping_n_s_per_m / k);
+        let viscous = match b.viscous_n_s_per_m {
+            Some(sigma) => q.mul_add(sigma, R::one()), // 1 + q σ, divided out below
+            None => R::one(),
+        };
+        let per_level = (q * k * b.stretch).mul_add(k_e + c_over_k, viscous) / viscous;
         let slip = k * b.relaxation_n_per_m * b.speed_m_per_s; // k A
-        let two_over_den = R::constant(2.0) / g.mul_add(per_level, slip * viscous);
+        let two_over_den = R::constant(2.0) / viscous / g.mul_add(per_level, slip);
         let driven = g.mul_add((q * k_e).mul_add(-z, w), slip * (q * c_over_k).mul_add(z, w));
 
-        let engaged = self.engaged(x_mid);
         let two_w = w + w;
-        let two_v = R::select(engaged, driven * two_over_den, two_w);
+        let two_v = R::select(self.engaged(x_mid), driven * two_over_den, two_w);
         let lost = two_w - two_v; // 2 q R_m
-        let per_force = R::one() / (k_e + c_over_k);
-        let damped = (per_force * c_over_k * R::constant(2.0)).mul_add(z, -z);
-        let passed = (-(per_force * b.viscous_n_s_per_m)).mul_add(two_v, damped);
         let per_lost = R::constant(0.5) / k_over_m * (R::one() / n); // 1 / (2 q)
-        let stretched = (per_force * R::constant(2.0) * per_lost).mul_add(lost, passed);
+        let per_force = R::one() / (k_e + c_over_k);
+        let kept = (per_force * c_over_k).mul_add(R::constant(2.0), -R::one()) * z;
+        let kept = match b.viscous_n_s_per_m {
+            Some(sigma) => (-(per_force * sigma)).mul_add(two_v, kept),
+            None => kept,
+        };
         state.joint_force_n = lost * per_lost;
         state.position_m = k.mul_add(two_v, state.position_m);
         state.velocity_m_per_s = two_v - v;
-        state.bristle_m = R::select(engaged, stretched, R::zero());
+        state.bristle_m = (per_force * R::constant(2.0) * per_lost).mul_add(lost, kept);
         n * state.joint_force_n
     }
 

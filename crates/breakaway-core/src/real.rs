@@ -108,6 +108,12 @@ pub trait Real:
         Self::select(other.lt(self), self, other)
     }
 
+    /// The larger of |self| and `other`, which is not below zero; `other` where `self` is not a number.
+    #[inline(always)]
+    fn max_abs(self, other: Self) -> Self {
+        self.abs().max(other)
+    }
+
     /// `self` limited to `[low, high]`; `low` where `self` is not a number.
     #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {

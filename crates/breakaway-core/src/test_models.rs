@@ -18,7 +18,7 @@ pub fn paper_joint() -> Lugre<f64> {
         coulomb_n: 360.0,
         stiffness_n_per_m: 3.6e7,
         damping_n_s_per_m: 9000.0,
-        viscous_n_s_per_m: 0.0,
+        viscous_n_s_per_m: None,
         stribeck_velocity_m_per_s: 0.09,
         engagement_length_m: 0.1,
         residual_n: 9.81,

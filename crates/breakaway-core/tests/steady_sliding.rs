@@ -27,14 +27,14 @@ const VELOCITIES: [f64; 10] = [1e-6, 1e-3, 0.01, 0.03, 0.064, 0.09, 0.15, 0.3, 1
 /// R = g(v, x) sgn v + σ₂ v with g from equations (3), (5) and (6), written out again here.
 #[test]
 fn the_settled_force_is_the_stribeck_curve() {
-    for viscous_n_s_per_m in [0.0, 60.0] {
+    for viscous_n_s_per_m in [None, Some(60.0)] {
         let law = Lugre { viscous_n_s_per_m, ..paper_joint() };
         for x in [0.0, 0.03, 0.0999] {
             for v in VELOCITIES.into_iter().flat_map(|v| [v, -v]) {
                 let f_s = 450.0 + (9.81 - 450.0) * x / 0.1;
                 let f_c = 360.0 + (9.81 - 360.0) * x / 0.1;
                 let g = f_c + (f_s - f_c) * (-(v / 0.09_f64).powi(2)).exp();
-                let expected = g * v.signum() + viscous_n_s_per_m * v;
+                let expected = g * v.signum() + viscous_n_s_per_m.unwrap_or(0.0) * v;
                 let error = settled_force(law, x, v) / expected - 1.0;
                 assert!(error.abs() < 1e-11, "at v = {v}, x = {x}: off by {error:e}");
             }

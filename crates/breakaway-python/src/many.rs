@@ -2,6 +2,7 @@
 
 use breakaway_batch::draws::{Stream, fraction};
 use breakaway_batch::{Batch, FIGURES, Figure, Instructions, Varied, Wanted, run_batch};
+use pyo3::buffer::PyBuffer;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -25,19 +26,19 @@ pub(crate) fn number_place(job: &Bound<'_, PyAny>) -> PyResult<usize> {
     }
 }
 
-/// Uniform draws on (0, 1) for number `part` of each run, as bytes of f64. `runs` is bytes of u64.
+/// Uniform draws on (0, 1) for number `part` of each run, as bytes of f64.
 #[pyfunction]
 pub(crate) fn fractions<'py>(
     py: Python<'py>,
     seed: u64,
-    runs: &[u8],
+    runs: PyBuffer<u64>,
     part: u32,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let draw = |run: &u64| fraction(seed, *run, Stream::Part(part));
-    as_bytes(py, &words(runs).iter().map(draw).collect::<Vec<f64>>())
+    let draw = |run: u64| fraction(seed, run, Stream::Part(part));
+    as_bytes(py, &runs.to_vec(py)?.into_iter().map(draw).collect::<Vec<f64>>())
 }
 
-/// Runs a batch. `runs` is bytes of u64, `varied` are places and bytes of f64, one for each run.
+/// Runs a batch. `varied` are places of numbers and their values, one for each run.
 /// Gives the figures by name as bytes of f64, and the outcomes as bytes of codes.
 #[pyfunction]
 #[pyo3(signature = (job, runs, varied, figures, outcome, threads, instructions, tell))]
@@ -45,8 +46,8 @@ pub(crate) fn fractions<'py>(
 pub(crate) fn run_many<'py>(
     py: Python<'py>,
     job: &Bound<'py, PyAny>,
-    runs: &[u8],
-    varied: Vec<(usize, Bound<'py, PyBytes>)>,
+    runs: PyBuffer<u64>,
+    varied: Vec<(usize, PyBuffer<f64>)>,
     figures: Vec<String>,
     outcome: bool,
     threads: usize,
@@ -54,9 +55,11 @@ pub(crate) fn run_many<'py>(
     tell: Bound<'py, PyAny>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyBytes>)> {
     let common = job::read(job)?;
-    let runs = words(runs);
-    let columns: Vec<(usize, Vec<f64>)> =
-        varied.iter().map(|(place, values)| (*place, numbers(values.as_bytes()))).collect();
+    let runs = runs.to_vec(py)?;
+    let mut columns = Vec::new();
+    for (place, values) in varied {
+        columns.push((place, values.to_vec(py)?));
+    }
     let varied = columns.iter().map(|(place, values)| Varied { place: *place, values }).collect();
     let batch = Batch { common, runs: &runs, varied };
     let wanted = Wanted { figures: named(&figures)?, outcome };
@@ -87,13 +90,4 @@ fn named(names: &[String]) -> PyResult<Vec<Figure>> {
         found.ok_or_else(|| PyValueError::new_err(format!("{name} is not a figure")))
     };
     names.iter().map(find).collect()
-}
-
-fn words(bytes: &[u8]) -> Vec<u64> {
-    let word = |chunk: &[u8]| chunk.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
-    bytes.chunks_exact(8).map(word).collect()
-}
-
-fn numbers(bytes: &[u8]) -> Vec<f64> {
-    words(bytes).into_iter().map(f64::from_bits).collect()
 }

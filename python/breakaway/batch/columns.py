@@ -18,8 +18,8 @@ from breakaway.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
 
-CORNERS_MAX = 10
-"""Most numbers whose every combination of extremes is tried."""
+CORNERS_ALWAYS = 64
+"""Combinations of extremes that are tried however few the runs are."""
 
 
 def with_nominal_controller(scenario: Scenario) -> Scenario:
@@ -94,7 +94,7 @@ def _is_number(annotation: object) -> bool:
     return annotation is float or any(map(_is_number, getattr(annotation, "__args__", ())))
 
 
-def check_values(scenario: Scenario, columns: Mapping[str, Array]) -> None:
+def check_values(scenario: Scenario, columns: Mapping[str, Array], first_run: int = 0) -> None:
     """Raise unless every run is a valid scenario.
 
     Every rule of a scenario is a comparison that a number can only make worse in one direction. So
@@ -109,16 +109,17 @@ def check_values(scenario: Scenario, columns: Mapping[str, Array]) -> None:
     """
     if not columns or not len(next(iter(columns.values()))):
         return
-    if len(columns) <= CORNERS_MAX and _corners_are_valid(scenario, columns):
+    runs = len(next(iter(columns.values())))
+    if 2 ** len(columns) <= max(runs, CORNERS_ALWAYS) and _corners_are_valid(scenario, columns):
         return
     values = scenario.model_dump()
-    for i in range(len(next(iter(columns.values())))):
+    for i in range(runs):
         for path, column in columns.items():
             _put(values, path, float(column[i]))
         try:
             Scenario.parse(values)
         except ScenarioError as error:
-            raise StudyError(f"run {i}: {error}") from None
+            raise StudyError(f"run {first_run + i}: {error}") from None
 
 
 def _corners_are_valid(scenario: Scenario, columns: Mapping[str, Array]) -> bool:

@@ -100,7 +100,7 @@ def draw_columns(
 
 def _fractions(seed: int, runs: range, number: int) -> Array:
     run_index = np.arange(runs.start, runs.stop, dtype=np.uint64)
-    return np.frombuffer(_core.fractions(seed, run_index.tobytes(), number))
+    return np.frombuffer(_core.fractions(seed, run_index, number))
 
 
 def _points(design: Design, dimensions: int, size: int, seed: int) -> dict[int, Array]:

@@ -102,16 +102,22 @@ def simulate_many(
     count = _whole("runs", runs, 1, RUNS_MAX)
     first = _whole("first_run", first_run, 0, 2**63)
     workers = os.cpu_count() if threads is None else _whole("threads", threads, 1, 4096)
+    if instructions not in (None, *_core.instructions()):
+        raise StudyError(
+            f"instructions: {instructions!r} is not one of {', '.join(_core.instructions())}"
+        )
     nominal = with_nominal_controller(scenario)
     check_paths(nominal, vary or {})
     columns = _columns(nominal, vary or {}, range(first, first + count), design)
-    check_values(nominal, columns)
+    check_values(nominal, columns, first)
     shared, varied = core_columns(nominal, columns)
     run_index = np.arange(first, first + count, dtype=np.uint64)
+    for column in (run_index, *columns.values()):
+        column.setflags(write=False)
     figures, codes = _core.run_many(
         shared,
-        run_index.tobytes(),
-        [(place, np.ascontiguousarray(column).tobytes()) for place, column in varied],
+        run_index,
+        [(place, np.ascontiguousarray(column)) for place, column in varied],
         [name for name in names if name != "outcome"],
         "outcome" in names,
         workers or 1,
@@ -170,5 +176,4 @@ def _given(path: str, values: object, count: int) -> NDArray[np.float64]:
         raise StudyError(
             f"vary[{path!r}]: has the shape {column.shape}; give one value for each of {count} runs"
         )
-    column.setflags(write=False)
     return column

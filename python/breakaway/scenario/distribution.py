@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from breakaway.scenario.model import Model, Positive
+from breakaway.scenario.model import Model, NotNegative, Positive
 
 Array = NDArray[np.float64]
 AnyModel = TypeVar("AnyModel", bound=Model)
@@ -45,7 +45,7 @@ class Uniform(Model):
             Shares, within 0 and 1.
 
         """
-        return self.low + u * (self.high - self.low)
+        return (1.0 - u) * self.low + u * self.high
 
     def scaled(self, factor: float) -> Uniform:
         """Give the distribution with its width multiplied, about its center.
@@ -91,7 +91,7 @@ class LogUniform(Model):
             Shares, within 0 and 1.
 
         """
-        return _within(self.low * (self.high / self.low) ** u, self.low, self.high)
+        return _within(self.low ** (1.0 - u) * self.high**u, self.low, self.high)
 
     def scaled(self, factor: float) -> LogUniform:
         """Give the distribution with its width in the logarithm multiplied, about its center.
@@ -123,7 +123,7 @@ class Normal(Model):
     """The kind of distribution."""
     mean: float
     """Mean of the distribution before it is truncated."""
-    std: Positive
+    std: NotNegative
     """Standard deviation of the distribution before it is truncated."""
     low: float | None = None
     """Smallest value. Left out: none."""
@@ -145,9 +145,15 @@ class Normal(Model):
         """
         from scipy.special import ndtr, ndtri
 
-        below = 0.0 if self.low is None else float(ndtr((self.low - self.mean) / self.std))
-        above = 1.0 if self.high is None else float(ndtr((self.high - self.mean) / self.std))
-        values = self.mean + self.std * np.asarray(ndtri(below + u * (above - below)))
+        if self.std == 0.0:
+            return np.full_like(u, self.mean)
+        low = -np.inf if self.low is None else (self.low - self.mean) / self.std
+        high = np.inf if self.high is None else (self.high - self.mean) / self.std
+        side = 1.0
+        if low >= 0.0:  # an upper tail is computed as the lower one, where small shares are exact
+            low, high, u, side = -high, -low, 1.0 - u, -1.0
+        share = (1.0 - u) * ndtr(low) + u * ndtr(high)
+        values = self.mean + side * self.std * np.asarray(ndtri(share))
         return _within(values, self.low, self.high)
 
     def scaled(self, factor: float) -> Normal:
@@ -182,7 +188,7 @@ class LogNormal(Model):
     """The kind of distribution."""
     median: Positive
     """Median of the distribution before it is truncated."""
-    sigma: Positive
+    sigma: NotNegative
     """Standard deviation of the natural logarithm."""
     low: Positive | None = None
     """Smallest value. Left out: none but 0."""

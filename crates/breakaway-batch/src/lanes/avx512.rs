@@ -11,8 +11,8 @@
 use core::arch::x86_64::{
     __m512d, __mmask8, _CMP_LE_OQ, _CMP_LT_OQ, _mm512_abs_pd, _mm512_add_pd, _mm512_castpd_si512,
     _mm512_castsi512_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_fmadd_pd, _mm512_loadu_pd,
-    _mm512_mask_blend_pd, _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_set1_pd,
-    _mm512_slli_epi64, _mm512_storeu_pd, _mm512_sub_pd, _mm512_xor_pd,
+    _mm512_mask_blend_pd, _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_range_pd,
+    _mm512_set1_pd, _mm512_slli_epi64, _mm512_storeu_pd, _mm512_sub_pd, _mm512_xor_pd,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -122,6 +122,14 @@ impl Real for Eight {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self(unsafe { _mm512_max_pd(self.0, other.0) })
+    }
+    /// One instruction: the larger magnitude of two, its sign cleared; the number of the two where
+    /// one is none.
+    #[inline(always)]
+    fn max_abs(self, other: Self) -> Self {
+        const LARGER_MAGNITUDE: i32 = 0b11;
+        const SIGN_CLEARED: i32 = 0b10 << 2;
+        Self(unsafe { _mm512_range_pd::<{ SIGN_CLEARED | LARGER_MAGNITUDE }>(self.0, other.0) })
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {

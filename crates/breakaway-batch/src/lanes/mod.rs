@@ -132,6 +132,14 @@ impl<V: Real, const K: usize> Real for Lanes<V, K> {
         out
     }
     #[inline(always)]
+    fn max_abs(self, other: Self) -> Self {
+        let mut out = self;
+        for i in 0..K {
+            out.0[i] = self.0[i].max_abs(other.0[i]);
+        }
+        out
+    }
+    #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         let mut out = self;
         for i in 0..K {

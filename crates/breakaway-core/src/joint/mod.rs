@@ -34,8 +34,8 @@ pub struct Bristle<R> {
     pub stiffness_n_per_m: R,
     /// c in N s/m.
     pub damping_n_s_per_m: R,
-    /// σ in N s/m.
-    pub viscous_n_s_per_m: R,
+    /// σ in N s/m, if there is viscous friction.
+    pub viscous_n_s_per_m: Option<R>,
 }
 
 impl<R: Real> Bristle<R> {
@@ -54,7 +54,10 @@ impl<R: Real> Bristle<R> {
     /// R for a deflection, its rate and a velocity: equations (1) and (7).
     #[inline(always)]
     pub fn force(&self, v: R, z: R, rate: R) -> R {
-        let damped = self.damping_n_s_per_m.mul_add(rate, self.viscous_n_s_per_m * v);
+        let damped = match self.viscous_n_s_per_m {
+            Some(sigma) => self.damping_n_s_per_m.mul_add(rate, sigma * v),
+            None => self.damping_n_s_per_m * rate,
+        };
         self.stiffness_n_per_m.mul_add(z, damped)
     }
 }

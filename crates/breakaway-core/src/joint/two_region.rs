@@ -57,10 +57,15 @@ impl<R: Real> TwoRegion<R> {
         let elastic = (self.stiffness_n_per_m * state.bristle_m).abs();
         let slips_on = state.sliding.is_set() & R::zero().lt(v * direction);
         let breaks = !state.sliding.is_set() & (self.stiction(x) * level_factor).lt(elastic);
-        let sliding = slips_on | breaks;
+        let engaged = x.lt(self.engagement_length_m);
+        let sliding = engaged & (slips_on | breaks);
         let slip_deflection = direction * self.coulomb(x) * level_factor / self.stiffness_n_per_m;
         JointState {
-            bristle_m: R::select(sliding, slip_deflection, state.bristle_m),
+            bristle_m: R::select(
+                engaged,
+                R::select(sliding, slip_deflection, state.bristle_m),
+                R::zero(),
+            ),
             sliding: R::flag(sliding),
         }
     }
@@ -74,7 +79,7 @@ impl<R: Real> TwoRegion<R> {
             friction_level_n: R::one(),
             stiffness_n_per_m: self.stiffness_n_per_m,
             damping_n_s_per_m: self.damping_n_s_per_m,
-            viscous_n_s_per_m: R::zero(),
+            viscous_n_s_per_m: None,
         }
     }
 }

@@ -28,7 +28,7 @@ const LUGRE: Lugre<f64> = Lugre {
     coulomb_n: 360.0,
     stiffness_n_per_m: 6e6,
     damping_n_s_per_m: 1500.0,
-    viscous_n_s_per_m: 40.0,
+    viscous_n_s_per_m: Some(40.0),
     stribeck_velocity_m_per_s: 0.09,
     engagement_length_m: LENGTH_M,
     residual_n: 150.0,
