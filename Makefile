@@ -3,6 +3,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PEERS := $(VENV)/peers
 UV := $(BIN)/uv --quiet
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
@@ -38,6 +39,9 @@ lint: $(VENV)/.built $(VENV)/.development
 bench: $(VENV)/.built
 	$(BIN)/python bench/measure.py
 
+peers: $(VENV)/.built $(PEERS)/.installed
+	PYTHONPATH=python $(PEERS)/bin/python -m bench.peers
+
 docs: $(VENV)/.built
 	cargo doc --quiet --locked --workspace --exclude breakaway-python --no-deps
 	$(BIN)/python tools/draw_readme.py
@@ -62,9 +66,15 @@ $(VENV)/.built: $(VENV)/.runtime $(RUST_SOURCES)
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(UV) pip install --python $(BIN)/python --no-deps --no-build-isolation --reinstall-package breakaway --editable .
 	@touch $@
 
+$(PEERS)/.installed: $(VENV)/.runtime bench/peers/requirements.lock
+	$(PYTHON) -m venv $(PEERS)
+	$(UV) pip install --python $(PEERS)/bin/python --require-hashes -r bench/peers/requirements.lock
+	@touch $@
+
 lock: $(VENV)/.installer
 	$(UV) pip compile pyproject.toml --all-extras --group build --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/runtime.lock
 	$(UV) pip compile pyproject.toml --all-extras --group build --group dev --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/dev.lock
+	$(UV) pip compile pyproject.toml bench/peers/requirements.in --constraint requirements/runtime.lock --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o bench/peers/requirements.lock
 
 clean:
 	rm -rf $(VENV) target out

@@ -49,6 +49,7 @@ def test_python_runs_and_prints_what_its_comments_say(page, tmp_path, monkeypatc
 
 @pytest.mark.parametrize("page", with_blocks("console"))
 def test_commands_run(page, tmp_path):
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
     for block in blocks(page, "console"):
         for line in block.splitlines():
             program, *arguments = shlex.split(line, comments=True)

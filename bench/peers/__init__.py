@@ -1,0 +1,1 @@
+"""The paper's extraction loop in other people's tools, beside ours."""
