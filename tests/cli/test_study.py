@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import breakaway as bk
-from breakaway.cli.study import progress_in_words
+from breakaway.cli.progress import progress_in_words
 from breakaway.studies import StudyProgress
 
 Call = Callable[..., Any]

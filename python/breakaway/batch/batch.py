@@ -117,13 +117,7 @@ class Batch:
             pandas is not installed.
 
         """
-        try:
-            import_module("pandas")
-        except ImportError:
-            raise StudyError(
-                "pandas is not installed; install it with: pip install 'breakaway[pandas]'"
-            ) from None
-        return self.to_arrow().to_pandas().set_index("run_index")
+        return as_pandas(self.to_arrow()).set_index("run_index")
 
     def to_xarray(self) -> xarray.Dataset:
         """Give the columns as a dataset over ``run_index``, with units.
@@ -151,6 +145,24 @@ class Batch:
         if not -len(self) <= i < len(self):
             raise StudyError(f"row {i}: the batch has {len(self)} runs")
         return i % len(self)
+
+
+def as_pandas(table: Any) -> Any:  # noqa: ANN401 - pyarrow has no type stubs, pandas is optional
+    """Turn a table of pyarrow into a pandas DataFrame.
+
+    Raises
+    ------
+    StudyError
+        pandas is not installed.
+
+    """
+    try:
+        import_module("pandas")
+    except ImportError:
+        raise StudyError(
+            "pandas is not installed; install it with: pip install 'breakaway[pandas]'"
+        ) from None
+    return table.to_pandas()
 
 
 def unit_of(name: str) -> str:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from breakaway.cli.progress import shown_progress
 from breakaway.cli.show import Sheet, say
 
 if TYPE_CHECKING:
     from breakaway.report.reproduction import Reproduction
-    from breakaway.studies import StudyProgress
 
 
 def reproduce(
@@ -48,7 +44,7 @@ def _in_full(out: Path) -> Reproduction:
     from breakaway.reproduction.survey import FullSurvey
 
     try:
-        with _shown_progress() as report:
+        with shown_progress() as report:
             full = FullSurvey(progress=report, notice=_progress)
             return reproduce_paper(out, _progress, full)
     except KeyboardInterrupt:
@@ -61,34 +57,3 @@ def _in_full(out: Path) -> Reproduction:
 
 def _progress(step: str) -> None:
     typer.echo(step, err=True)
-
-
-@contextmanager
-def _shown_progress() -> Iterator[Callable[[StudyProgress], None] | None]:
-    """Show on a terminal how far the runs are: bar, rate, time left; in pipes nothing."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn
-
-    from breakaway.cli.study import progress_in_words
-
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(bar_width=None),
-        TextColumn("{task.percentage:>3.0f} %  {task.fields[told]}", markup=False),
-    )
-    bar = Progress(*columns, console=Console(stderr=True), transient=True)
-    task = bar.add_task("", total=None, told="")
-    began = time.monotonic()
-
-    def report(at: StudyProgress) -> None:
-        told = progress_in_words(at, time.monotonic() - began)
-        bar.update(task, completed=at.runs_done, total=at.runs_max, description=at.doing, told=told)
-        bar.start() if at.runs_done < at.runs_max else bar.stop()
-
-    try:
-        yield report
-    finally:
-        bar.stop()

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
 from breakaway.cli.show import Sheet, say, say_json
 
 if TYPE_CHECKING:
-    from breakaway.studies import StudyProgress, StudyResult
+    from breakaway.studies import StudyResult
 
 ROWS_MAX = 40
 """Most rows of a table that are printed; its file has all."""
@@ -51,7 +50,7 @@ def study(
 
         refuse_to_overwrite(file, out / "study.toml")
     try:
-        with _shown_progress(asked.name) as progress:
+        with shown_progress(asked.name) as progress:
             done = run_study(
                 asked, out, resume=resume, threads=threads, progress=progress, notice=_notice
             )
@@ -78,63 +77,6 @@ def study(
 
 def _notice(sentence: str) -> None:
     print(sentence, file=sys.stderr)
-
-
-@contextmanager
-def _shown_progress(name: str) -> Iterator[Callable[[StudyProgress], None] | None]:
-    """Show on a terminal how far a study is: bar, runs, rate, time left; in pipes nothing."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn
-
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(bar_width=None),
-        TextColumn("{task.percentage:>3.0f} %  {task.fields[told]}", markup=False),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=None, told="")
-        began = time.monotonic()
-
-        def report(at: StudyProgress) -> None:
-            told = progress_in_words(at, time.monotonic() - began)
-            bar.update(
-                task,
-                completed=at.runs_done,
-                total=at.runs_max,
-                description=f"{name}: {at.doing}",
-                told=told,
-            )
-
-        yield report
-
-
-def progress_in_words(at: StudyProgress, elapsed_s: float) -> str:
-    """Say how many runs are done, how fast, and how long the rest takes at most.
-
-    Runs that were found on disk do not count into the rate.
-
-    Examples
-    --------
-    >>> from breakaway.studies import StudyProgress
-    >>> at = StudyProgress(runs_done=3000, runs_found=1000, runs_max=9000, doing="grid")
-    >>> progress_in_words(at, 20.0)
-    '3000 of 9000 runs, 100 runs/s, 1 min 00 s left'
-
-    """
-    told = f"{at.runs_done} of {at.runs_max} runs"
-    computed = at.runs_done - at.runs_found
-    if computed <= 0 or elapsed_s <= 0.0:
-        return told
-    rate = computed / elapsed_s
-    left_s = round((at.runs_max - at.runs_done) / rate)
-    minutes, seconds = divmod(left_s, 60)
-    hours, minutes = divmod(minutes, 60)
-    left = f"{hours} h {minutes:02} min" if hours else f"{minutes} min {seconds:02} s"
-    speed = f"{rate:,.0f}" if rate >= 10.0 else f"{rate:.2g}"
-    return f"{told}, {speed} runs/s, {left if hours or minutes else f'{seconds} s'} left"
 
 
 def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:

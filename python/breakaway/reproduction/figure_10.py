@@ -77,11 +77,16 @@ def _draw_iae(axes: Axes, control: str, survey: DisturbanceRange) -> None:
 
 
 def _draw_failures(axes: Axes, control: str, survey: DisturbanceRange) -> None:
-    """Draw shares as dots with a bar up to the bound, and the bound alone where none failed."""
+    """Draw shares as dots with a bar up to the bound, and the bound alone where none failed.
+
+    Nothing at var = 0, where all runs are the same one and a share means nothing.
+    """
     color = CONTROL_COLORS[control]
     share = 1.0 - survey.released / survey.runs
     var = 100.0 * survey.var
     bound = np.array([row["not_extracted_upper_bound"] for row in survey.rows()], dtype=float)
+    drawn = survey.var > 0.0
+    share, var, bound = share[drawn], var[drawn], bound[drawn]
     some = share > 0.0
     axes.vlines(var[some], share[some], bound[some], color=color, lw=1.2)
     axes.plot(var[some], share[some], "o", ms=3, color=color)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from breakaway.batch.batch import as_pandas
 from breakaway.batch.columns import at_run, with_nominal_controller
 from breakaway.errors import StudyError
 from breakaway.run import Run
@@ -109,13 +110,7 @@ class StudyResult:
             pandas is not installed.
 
         """
-        try:
-            import_module("pandas")
-        except ImportError:
-            raise StudyError(
-                "pandas is not installed; install it with: pip install 'breakaway[pandas]'"
-            ) from None
-        return self.scan().to_pandas()
+        return as_pandas(self.scan())
 
     def replay(self, point: int, run_index: int, *, trace_every: int | None = None) -> Run:
         """Simulate one run again, with its trace; its metrics are the same bits.

@@ -1,0 +1,71 @@
+"""How far long work is, shown on a terminal."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from breakaway.studies import StudyProgress
+
+
+@contextmanager
+def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None] | None]:
+    """Show on a terminal how far runs are: bar, runs, rate, time left; in pipes nothing.
+
+    The bar is there while runs are under way and not between, where other lines may be printed.
+    """
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=None),
+        TextColumn("{task.percentage:>3.0f} %  {task.fields[told]}", markup=False),
+    )
+    bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    task = bar.add_task("", total=None, told="")
+    began = time.monotonic()
+
+    def report(at: StudyProgress) -> None:
+        told = progress_in_words(at, time.monotonic() - began)
+        doing = f"{name}: {at.doing}" if name else at.doing
+        bar.update(task, completed=at.runs_done, total=at.runs_max, description=doing, told=told)
+        bar.start() if at.runs_done < at.runs_max else bar.stop()
+
+    try:
+        yield report
+    finally:
+        bar.stop()
+
+
+def progress_in_words(at: StudyProgress, elapsed_s: float) -> str:
+    """Say how many runs are done, how fast, and how long the rest takes at most.
+
+    Runs that were found on disk do not count into the rate.
+
+    Examples
+    --------
+    >>> from breakaway.studies import StudyProgress
+    >>> at = StudyProgress(runs_done=3000, runs_found=1000, runs_max=9000, doing="grid")
+    >>> progress_in_words(at, 20.0)
+    '3000 of 9000 runs, 100 runs/s, 1 min 00 s left'
+
+    """
+    told = f"{at.runs_done} of {at.runs_max} runs"
+    computed = at.runs_done - at.runs_found
+    if computed <= 0 or elapsed_s <= 0.0:
+        return told
+    rate = computed / elapsed_s
+    left_s = round((at.runs_max - at.runs_done) / rate)
+    minutes, seconds = divmod(left_s, 60)
+    hours, minutes = divmod(minutes, 60)
+    left = f"{hours} h {minutes:02} min" if hours else f"{minutes} min {seconds:02} s"
+    speed = f"{rate:,.0f}" if rate >= 10.0 else f"{rate:.2g}"
+    return f"{told}, {speed} runs/s, {left if hours or minutes else f'{seconds} s'} left"
