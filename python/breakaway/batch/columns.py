@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from breakaway.resolution import core_job, resolve, with_gains
 from breakaway.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
+AnyModel = TypeVar("AnyModel", bound=BaseModel)
 
 CORNERS_ALWAYS = 64
 """Combinations of extremes that are tried however few the runs are."""
@@ -145,10 +146,10 @@ def core_columns(
     What a scenario leaves open and follows from its numbers, such as the residual friction or a
     bound, is resolved column by column, in the arithmetic of a single scenario.
     """
-    model: BaseModel = scenario
+    model = scenario
     for path, values in columns.items():
         model = _with_column(model, path.split("."), values)
-    whole = core_job(resolve(model), 0)  # type: ignore[arg-type]
+    whole = core_job(resolve(model), 0)
     shared: dict[str, Any] = copy.deepcopy(whole)
     varied = dict(_arrays(whole, ""))
     for path, column in varied.items():
@@ -161,7 +162,7 @@ def core_columns(
     return shared, places
 
 
-def _with_column(model: BaseModel, path: list[str], values: Array) -> BaseModel:
+def _with_column(model: AnyModel, path: list[str], values: Array) -> AnyModel:
     """Put a column where a number is, unchecked."""
     name, *rest = path
     inner = values if not rest else _with_column(getattr(model, name), rest, values)
