@@ -294,7 +294,7 @@ def test_a_full_disk_keeps_what_is_finished(study_file, whole, tmp_path, full_at
     last = stderr.strip().splitlines()[-1]
     assert last.startswith("breakaway.errors.OutputError: ")
     assert "can not be written" in last
-    assert last.endswith("finished parts stay: go on with --resume")
+    assert last.endswith("finished parts stay: resume it to go on")
     kept = contents(folder)
     assert kept.items() <= contents(whole).items()
     assert len(kept) == 1 + full_at // 10

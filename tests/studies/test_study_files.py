@@ -2,6 +2,7 @@
 
 import tomllib
 
+import numpy as np
 import pytest
 import tomli_w
 
@@ -9,6 +10,7 @@ import breakaway as bk
 from breakaway.errors import StudyError
 from breakaway.studies import load_study, run_study
 from breakaway.studies.files import parse_study
+from breakaway.studies.points import Point
 from breakaway.studies.running import plan_of
 
 SWEEP = """
@@ -198,3 +200,16 @@ def test_draws_out_of_range_are_found_before_anything_runs(tmp_path, pushed, tab
         run_study(parse_study(values), tmp_path / "out")
     assert words in str(error.value)
     assert not (tmp_path / "out").exists()
+
+
+def test_an_invalid_run_is_named_by_its_own_number(monkeypatch):
+    """Runs are checked in slices; the number is that of the run and not of its place there."""
+    monkeypatch.setattr("breakaway.studies.points.CHECKED_TOGETHER", 10)
+    scenario = bk.load_scenario("paper_as_computed")
+    mass_kg = np.ones(40)
+    mass_kg[37] = -1.0
+    point = Point(
+        {}, scenario, range(40), lambda runs: {"part.mass_kg": mass_kg[runs.start :][:10]}
+    )
+    with pytest.raises(StudyError, match=r"^run 37: part\.mass_kg: -1\.0 is not > 0"):
+        point.check()

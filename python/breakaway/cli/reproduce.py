@@ -9,6 +9,7 @@ import typer
 
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.show import Sheet, say
+from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
     from breakaway.report.reproduction import Reproduction
@@ -47,7 +48,7 @@ def _in_full(out: Path) -> Reproduction:
         with shown_progress() as report:
             full = FullSurvey(progress=report, notice=_progress)
             return reproduce_paper(out, _progress, full)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, OutputError):
         if (out / "figure_10").exists():
             _progress(
                 f"finished levels are kept; go on with: breakaway reproduce --full --out {out}"

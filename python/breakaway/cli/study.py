@@ -12,6 +12,7 @@ import typer
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
 from breakaway.cli.show import Sheet, say, say_json
+from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
     from breakaway.studies import StudyResult
@@ -54,7 +55,7 @@ def study(
             done = run_study(
                 asked, out, resume=resume, threads=threads, progress=progress, notice=_notice
             )
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, OutputError):
         if (out / "manifest.json").exists():
             _notice(
                 f"finished parts are kept; go on with: breakaway study {file} --out {out} --resume"

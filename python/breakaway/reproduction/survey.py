@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
 from breakaway.batch import simulate_many
-from breakaway.errors import OutputError, StudyError
+from breakaway.errors import StudyError
 from breakaway.scenario.files import load_scenario
 from breakaway.scenario.scenario import Scenario
 from breakaway.studies import (
@@ -233,19 +233,13 @@ class FullSurvey:
         """
         total = _Total(len(CONTROLS) * len(self.levels) * self.seeds, self.progress)
         for control in CONTROLS:
-            try:
-                run_study(
-                    self.study(control),
-                    folder / control,
-                    resume=(folder / control / "manifest.json").exists(),
-                    progress=total.reporter(control.replace("_", " ")),
-                    notice=self.notice,
-                )
-            except OutputError as error:
-                reason = str(error).partition("; finished parts stay")[0]
-                raise OutputError(
-                    f"{reason}; finished levels stay: give the same command again to go on"
-                ) from None
+            run_study(
+                self.study(control),
+                folder / control,
+                resume=(folder / control / "manifest.json").exists(),
+                progress=total.reporter(control.replace("_", " ")),
+                notice=self.notice,
+            )
         return read_survey(folder)
 
 

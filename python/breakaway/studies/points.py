@@ -74,7 +74,7 @@ class Point:
         try:
             nominal = with_nominal_controller(self.scenario)
             for numbers in _slices(self.runs, CHECKED_TOGETHER):
-                check_values(nominal, self.draw(numbers))
+                check_values(nominal, self.draw(numbers), numbers.start)
         except (StudyError, ScenarioError) as error:
             where = ", ".join(f"{name} = {value}" for name, value in self.labels.items())
             raise StudyError(f"{where}: {error}" if where else str(error)) from None

@@ -116,7 +116,7 @@ def run_study(
             runner.remove_beyond()
             _write_end(study, plan, summary, runner.runs_done, folder)
         except OutputError as error:
-            raise OutputError(f"{error}; finished parts stay: go on with --resume") from None
+            raise OutputError(f"{error}; finished parts stay: resume it to go on") from None
     return open_study(folder)
 
 
