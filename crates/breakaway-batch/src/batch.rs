@@ -7,10 +7,6 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use breakaway_core::actuator::Actuator;
-use breakaway_core::control::{Controller, Pid};
-use breakaway_core::extraction::Timing;
-use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::reference::{Reference, Setpoint};
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
@@ -19,7 +15,7 @@ use crate::draws::HeldDraws;
 use crate::figures::Figure;
 use crate::instructions::{Instructions, Kernel};
 use crate::lanes::Wide;
-use crate::run::{Job, Run};
+use crate::run::{Job, Run, plain_kinds};
 
 /// Runs that differ in their draws and in some of their numbers.
 #[derive(Clone, Debug)]
@@ -165,7 +161,7 @@ impl Batch<'_> {
 impl Wanted {
     /// What must be counted. An outcome needs a force or a jump only where it has a limit.
     fn groups(&self, batch: &Batch) -> Groups {
-        let needs = |needs: Groups, figure: &Figure| needs.and(figure.needs);
+        let needs = |needs: Groups, figure: &Figure| needs.with(figure.needs);
         let groups = self.figures.iter().fold(Groups::NONE, needs);
         if !self.outcome {
             return groups;
@@ -178,7 +174,7 @@ impl Wanted {
             events: true,
             ..Groups::NONE
         };
-        groups.and(judged)
+        groups.with(judged)
     }
 }
 
@@ -256,28 +252,6 @@ impl Kernel for InLanes<'_> {
             Run::finished(metrics.map(&mut lane_of(lane)), end, &limits.map(&mut lane_of(lane)))
         };
         Some((0..range.len()).map(finish).collect())
-    }
-}
-
-/// The extraction again if it is of the commonest kinds, written so that the compiler sees them.
-#[inline(always)]
-fn plain_kinds<V: Wide>(extraction: &Extraction<V>) -> Option<Extraction<V>> {
-    let Extraction { joint, controller, actuator, timing, .. } = *extraction;
-    match (joint, controller, actuator) {
-        (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
-            if joint.viscous_n_s_per_m.is_none()
-                && pid.is_plain()
-                && timing.is_every_period_once() =>
-        {
-            Some(Extraction {
-                joint: Joint::Lugre(Lugre { viscous_n_s_per_m: None, ..joint }),
-                controller: Controller::Pid(Pid::plain(pid.gains)),
-                actuator: Actuator::Ideal,
-                timing: Timing::every_period_once(timing.control_period_s),
-                ..*extraction
-            })
-        }
-        _ => None,
     }
 }
 

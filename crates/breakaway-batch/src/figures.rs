@@ -21,11 +21,11 @@ const IAE: Groups = Groups { iae: true, ..NONE };
 const ERROR: Groups = Groups { error: true, ..NONE };
 const EXTREMES: Groups = Groups { extremes: true, ..NONE };
 const FORCE: Groups = Groups { force: true, ..NONE };
-const FORCE_AND_TIME: Groups = FORCE.and(TIME);
+const FORCE_AND_TIME: Groups = FORCE.with(TIME);
 const IMPACTS: Groups = Groups { impacts: true, ..NONE };
 const JUMP: Groups = Groups { jump: true, ..NONE };
 const END: Groups = Groups { end: true, ..NONE };
-const FORCE_AND_END: Groups = FORCE.and(END);
+const FORCE_AND_END: Groups = FORCE.with(END);
 const EVENTS: Groups = Groups { events: true, ..NONE };
 
 /// Every figure.

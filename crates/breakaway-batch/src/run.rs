@@ -5,7 +5,7 @@ use breakaway_core::control::{Controller, Pid};
 use breakaway_core::extraction::{Sample, Timing};
 use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::metrics::{Groups, Limits};
-use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
+use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome, Real};
 
 use crate::draws::HeldDraws;
 
@@ -89,23 +89,31 @@ unsafe fn run_with_fma<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) 
 /// with a choice at every step. Both give the same bits.
 #[inline(always)]
 fn run_loop<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<Run, E> {
-    let extraction = job.extraction;
-    match (extraction.joint, extraction.controller, extraction.actuator, extraction.timing) {
-        (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal, timing)
+    match plain_kinds(&job.extraction) {
+        Some(extraction) => run_kinds(&Job { extraction, ..*job }, keep_going),
+        None => run_kinds(job, keep_going),
+    }
+}
+
+/// The extraction again if it is of the commonest kinds, written so that the compiler sees them.
+#[inline(always)]
+pub(crate) fn plain_kinds<R: Real>(extraction: &Extraction<R>) -> Option<Extraction<R>> {
+    let Extraction { joint, controller, actuator, timing, .. } = *extraction;
+    match (joint, controller, actuator) {
+        (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
             if joint.viscous_n_s_per_m.is_none()
                 && pid.is_plain()
                 && timing.is_every_period_once() =>
         {
-            let extraction = Extraction {
+            Some(Extraction {
                 joint: Joint::Lugre(Lugre { viscous_n_s_per_m: None, ..joint }),
                 controller: Controller::Pid(Pid::plain(pid.gains)),
                 actuator: Actuator::Ideal,
                 timing: Timing::every_period_once(timing.control_period_s),
-                ..extraction
-            };
-            run_kinds(&Job { extraction, ..*job }, keep_going)
+                ..*extraction
+            })
         }
-        _ => run_kinds(job, keep_going),
+        _ => None,
     }
 }
 

@@ -90,7 +90,7 @@ impl Groups {
 
     /// The groups of either.
     #[must_use]
-    pub const fn and(self, other: Self) -> Self {
+    pub const fn with(self, other: Self) -> Self {
         Self {
             time: self.time | other.time,
             iae: self.iae | other.iae,
