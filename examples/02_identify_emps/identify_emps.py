@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from breakaway.identify import identify_inertia_friction
+from breakaway.identification import identify_inertia_friction
 from breakaway.logs import read_log
 
 DEFAULT = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"

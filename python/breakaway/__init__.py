@@ -17,7 +17,7 @@ from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioErro
 if TYPE_CHECKING:
     from breakaway import design
     from breakaway.batch import Batch, draw_columns, grid_columns, simulate_many
-    from breakaway.identify import JointFile, identify_inertia_friction
+    from breakaway.identification import JointFile, identify_inertia_friction
     from breakaway.imposed import ImposedMotion, impose_motion
     from breakaway.logs import Log, read_log
     from breakaway.resolution import resolve
@@ -77,7 +77,7 @@ if TYPE_CHECKING:
 # Where each public name lives; loaded on first use, so that `import breakaway` stays quick.
 _HOMES = {
     "breakaway.batch": ("Batch", "draw_columns", "grid_columns", "simulate_many"),
-    "breakaway.identify": ("JointFile", "identify_inertia_friction"),
+    "breakaway.identification": ("JointFile", "identify_inertia_friction"),
     "breakaway.imposed": ("ImposedMotion", "impose_motion"),
     "breakaway.logs": ("Log", "read_log"),
     "breakaway.resolution": ("resolve",),

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from breakaway.cli.identify import LogFormat
-from breakaway.identify import NOT_IDENTIFIED, JointFile, identify_inertia_friction
+from breakaway.identification import NOT_IDENTIFIED, JointFile, identify_inertia_friction
 from breakaway.logs import FORMATS
 
 Call = Callable[..., Any]

@@ -13,7 +13,7 @@ from breakaway.cli.quantity import show_uncertain, split_unit
 from breakaway.cli.show import Sheet, busy, say, say_json
 
 if TYPE_CHECKING:
-    from breakaway.identify import AsymmetricFit, InertiaFrictionFit, SymmetricFit
+    from breakaway.identification import AsymmetricFit, InertiaFrictionFit, SymmetricFit
 
 
 class LogFormat(StrEnum):
@@ -50,7 +50,7 @@ def identify(
     friction of its own in each, with standard errors, and what the log can
     not tell.
     """
-    from breakaway.identify import JointFile, identify_inertia_friction
+    from breakaway.identification import JointFile, identify_inertia_friction
     from breakaway.logs import read_log
 
     settings: dict[str, Any] = {"lowpass_hz": lowpass_hz, "decimation": decimation}
@@ -73,7 +73,7 @@ def identify(
 def _check_target(log: Path, out: Path) -> None:
     """Refuse to write over the log, or over anything but another joint file."""
     from breakaway.errors import OutputError, ScenarioError
-    from breakaway.identify import JointFile
+    from breakaway.identification import JointFile
     from breakaway.output import refuse_to_overwrite
 
     refuse_to_overwrite(log, out)

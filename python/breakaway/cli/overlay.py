@@ -10,7 +10,7 @@ from breakaway.cli.quantity import show
 from breakaway.cli.show import Sheet
 from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
-from breakaway.identify.joint_file import JointFile
+from breakaway.identification.joint_file import JointFile
 from breakaway.resolution import resolve
 from breakaway.scenario import PolePlacement, Scenario, gain_sets
 

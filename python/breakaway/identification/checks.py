@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from breakaway.errors import LogError
-from breakaway.identify.regression import TRIM_PER_DECIMATION, Motion
+from breakaway.identification.regression import TRIM_PER_DECIMATION, Motion
 from breakaway.logs.log import Log
 
 SPACING_TOLERANCE = 0.01

@@ -9,14 +9,14 @@ from typing import Any, TypeVar
 import numpy as np
 
 from breakaway.errors import LogError
-from breakaway.identify.checks import (
+from breakaway.identification.checks import (
     SIGNIFICANCE,
     check_mass,
     check_motion,
     check_sampling,
     check_settings,
 )
-from breakaway.identify.regression import (
+from breakaway.identification.regression import (
     TRIM_PER_DECIMATION,
     Solution,
     least_squares,

@@ -10,7 +10,7 @@ import pytest
 
 import breakaway as bk
 from breakaway.errors import LogError, OutputError, ScenarioError
-from breakaway.identify import InertiaFrictionFit, JointFile, identify_inertia_friction
+from breakaway.identification import InertiaFrictionFit, JointFile, identify_inertia_friction
 from breakaway.logs import Log
 
 

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from breakaway._core import __version__
 from breakaway.errors import LogError, ScenarioError
-from breakaway.identify.inertia_friction import InertiaFrictionFit
+from breakaway.identification.inertia_friction import InertiaFrictionFit
 from breakaway.logs.log import Log
 from breakaway.output import write_atomically
 from breakaway.scenario.files import parse_toml
@@ -100,7 +100,7 @@ class JointFile(Model):
     Examples
     --------
     >>> import numpy as np
-    >>> from breakaway.identify import identify_inertia_friction
+    >>> from breakaway.identification import identify_inertia_friction
     >>> t_s = np.arange(5000) / 1000.0
     >>> v = 0.3 * np.cos(5 * t_s) + 0.2 * np.cos(2 * t_s)
     >>> force_n = np.gradient(4 * v, t_s) + 30 * v + 6 * np.sign(v)

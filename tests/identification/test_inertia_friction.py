@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import sawtooth
 
 from breakaway.errors import LogError
-from breakaway.identify import InertiaFrictionFit, identify_inertia_friction
+from breakaway.identification import InertiaFrictionFit, identify_inertia_friction
 from breakaway.logs import Log, read_log
 
 EMPS = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from breakaway.identify.inertia_friction import (
+from breakaway.identification.inertia_friction import (
     NOT_IDENTIFIED,
     AsymmetricFit,
     InertiaFrictionFit,
     SymmetricFit,
     identify_inertia_friction,
 )
-from breakaway.identify.joint_file import JointFile
+from breakaway.identification.joint_file import JointFile
 
 __all__ = [
     "NOT_IDENTIFIED",
