@@ -11,6 +11,7 @@ pub mod imposed;
 pub mod instructions;
 pub mod lanes;
 pub mod normal;
+pub mod rig;
 pub mod run;
 #[cfg(feature = "yardstick")]
 pub mod yardstick;
@@ -21,4 +22,5 @@ pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
 pub use instructions::Instructions;
 pub use lanes::Lanes;
+pub use rig::{Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig};
 pub use run::{Job, Run, TRACE_COLUMNS, Trace, run};

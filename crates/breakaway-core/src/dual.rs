@@ -1,5 +1,8 @@
 //! Numbers that carry exact first derivatives.
 
+// Indexed loops are inlined and unrolled within any caller's instruction set; closures are not.
+#![allow(clippy::needless_range_loop)]
+
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::real::Real;
@@ -40,57 +43,50 @@ impl<R: Real, const P: usize> Dual<R, P> {
     }
 
     #[inline(always)]
-    fn zip(self, other: Self, value: R, f: impl Fn(R, R) -> R) -> Self {
-        let derivative = core::array::from_fn(|i| f(self.derivative[i], other.derivative[i]));
-        Self { value, derivative }
-    }
-
-    #[inline(always)]
     fn chain(self, value: R, slope: R) -> Self {
-        Self { value, derivative: self.derivative.map(|d| d * slope) }
+        let mut out = Self { value, derivative: self.derivative };
+        for i in 0..P {
+            out.derivative[i] = self.derivative[i] * slope;
+        }
+        out
     }
 }
 
-impl<R: Real, const P: usize> Add for Dual<R, P> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, self.value + other.value, |a, b| a + b)
-    }
+/// An operator with its value, its preparation and its derivative at each place.
+macro_rules! operator {
+    ($trait:ident, $method:ident, |$a:ident, $b:ident| $value:expr, $with:expr, |$da:ident, $db:ident, $shared:ident| $slope:expr) => {
+        impl<R: Real, const P: usize> $trait for Dual<R, P> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let ($a, $b) = (self.value, other.value);
+                let $shared = $with;
+                let mut out = Self { value: $value, derivative: self.derivative };
+                for i in 0..P {
+                    let ($da, $db) = (self.derivative[i], other.derivative[i]);
+                    out.derivative[i] = $slope;
+                }
+                out
+            }
+        }
+    };
 }
 
-impl<R: Real, const P: usize> Sub for Dual<R, P> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, self.value - other.value, |a, b| a - b)
-    }
-}
-
-impl<R: Real, const P: usize> Mul for Dual<R, P> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let slope = |a: R, b: R| a.mul_add(other.value, self.value * b);
-        self.zip(other, self.value * other.value, slope)
-    }
-}
-
-impl<R: Real, const P: usize> Div for Dual<R, P> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        let quotient = self.value / other.value;
-        let inverse = R::one() / other.value;
-        self.zip(other, quotient, |a, b| (a - quotient * b) * inverse)
-    }
-}
+operator!(Add, add, |a, b| a + b, (), |da, db, _none| da + db);
+operator!(Sub, sub, |a, b| a - b, (), |da, db, _none| da - db);
+operator!(Mul, mul, |a, b| a * b, (a, b), |da, db, values| da.mul_add(values.1, values.0 * db));
+operator!(Div, div, |a, b| a / b, (a / b, R::one() / b), |da, db, quotient| (da - quotient.0 * db)
+    * quotient.1);
 
 impl<R: Real, const P: usize> Neg for Dual<R, P> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: -self.value, derivative: self.derivative.map(|d| -d) }
+        let mut out = Self { value: -self.value, derivative: self.derivative };
+        for i in 0..P {
+            out.derivative[i] = -self.derivative[i];
+        }
+        out
     }
 }
 
@@ -115,7 +111,11 @@ impl<R: Real, const P: usize> Real for Dual<R, P> {
     }
     #[inline(always)]
     fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
-        yes.zip(no, R::select(mask, yes.value, no.value), |a, b| R::select(mask, a, b))
+        let mut out = Self { value: R::select(mask, yes.value, no.value), ..no };
+        for i in 0..P {
+            out.derivative[i] = R::select(mask, yes.derivative[i], no.derivative[i]);
+        }
+        out
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -124,14 +124,15 @@ impl<R: Real, const P: usize> Real for Dual<R, P> {
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        let slope = |i: usize| {
-            let inner = self.value.mul_add(factor.derivative[i], addend.derivative[i]);
-            self.derivative[i].mul_add(factor.value, inner)
-        };
-        Self {
+        let mut out = Self {
             value: self.value.mul_add(factor.value, addend.value),
-            derivative: core::array::from_fn(slope),
+            derivative: addend.derivative,
+        };
+        for i in 0..P {
+            let inner = self.value.mul_add(factor.derivative[i], addend.derivative[i]);
+            out.derivative[i] = self.derivative[i].mul_add(factor.value, inner);
         }
+        out
     }
     #[inline(always)]
     fn exp2_parts(self) -> (Self, Self) {

@@ -42,6 +42,7 @@ pub mod metrics;
 pub mod plant;
 pub mod real;
 pub mod reference;
+pub mod rig;
 pub mod test_models;
 
 pub use disturbance::Draws;

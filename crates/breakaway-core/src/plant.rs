@@ -1,7 +1,7 @@
 //! Newton's law for the part, and the two ways to integrate it with its joint.
 
 use crate::disturbance::Factors;
-use crate::joint::{Bristle, Joint, JointState};
+use crate::joint::{Bristle, JointState, Law};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -52,9 +52,9 @@ pub enum Integrator {
 
 /// m dv/dt = F − R,  dx/dt = v,  with R = 0 beyond the end of the guide.
 #[derive(Clone, Copy, Debug)]
-pub struct Plant<'a, R> {
+pub struct Plant<'a, R, L> {
     /// The joint that holds the part.
-    pub joint: &'a Joint<R>,
+    pub joint: &'a L,
     /// m in kg.
     pub mass_kg: R,
     /// F in N, constant over a step.
@@ -63,7 +63,7 @@ pub struct Plant<'a, R> {
     pub factors: Factors<R>,
 }
 
-impl<R: Real> Plant<'_, R> {
+impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     /// Steps by `h` seconds; gives the mean joint force in N over the step, disturbance included.
     #[inline(always)]
     pub fn step(&self, integrator: Integrator, state: &mut PlantState<R>, h: R) -> R {
@@ -190,7 +190,7 @@ impl<R: Real> Plant<'_, R> {
 /// The midpoint rule again, second order and stable for any step. The velocity of `state` is set
 /// to `v`. Beyond the end of the guide the force is zero.
 #[inline(always)]
-pub fn impose_motion<R: Real>(joint: &Joint<R>, state: &mut PlantState<R>, v: R, h: R) -> R {
+pub fn impose_motion<R: Real>(joint: &impl Law<R>, state: &mut PlantState<R>, v: R, h: R) -> R {
     let (zero, one) = (R::zero(), R::one());
     let settled = joint.settle(state.joint(), state.position_m, v, one);
     (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);

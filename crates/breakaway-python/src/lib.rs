@@ -3,6 +3,7 @@
 mod error;
 mod job;
 mod many;
+mod rig;
 
 use breakaway_batch::{FIGURES, Run, TRACE_COLUMNS, imposed_motion, run};
 use breakaway_core::Outcome;
@@ -85,6 +86,8 @@ fn breakaway_force(joint: &Bound<'_, PyAny>, position_m: f64) -> PyResult<f64> {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("OUTCOMES", OUTCOMES)?;
+    module.add("RIG_NUMBERS", breakaway_core::rig::RIG_NUMBERS)?;
+    module.add_class::<rig::RigRecord>()?;
     module.add_function(wrap_pyfunction!(run_one, module)?)?;
     module.add_function(wrap_pyfunction!(many::run_many, module)?)?;
     module.add_function(wrap_pyfunction!(many::instructions, module)?)?;

@@ -3,10 +3,12 @@
 //! A controller is stepped once per control period with what it measures and gives a commanded
 //! force that is held until the next sample. To add one: a file here, a variant of [`Controller`].
 
+mod cascade;
 mod fm_vibration;
 mod pid;
 mod two_step;
 
+pub use cascade::{Cascade, CascadeState};
 pub use fm_vibration::{FmVibration, FmVibrationState, PulseShape};
 pub use pid::{AntiWindup, DerivativeOf, Gains, Pid, PidState, VelocityFrom};
 pub use two_step::TwoStep;
@@ -73,7 +75,7 @@ impl<R: Real> ControllerState<R> {
     }
 
     #[inline(always)]
-    fn pid(&self) -> PidState<R> {
+    pub(crate) fn pid(&self) -> PidState<R> {
         PidState {
             integral_n: self.integral_n,
             derivative_m_per_s: self.derivative_m_per_s,
@@ -82,7 +84,7 @@ impl<R: Real> ControllerState<R> {
     }
 
     #[inline(always)]
-    fn set_pid(&mut self, pid: PidState<R>) {
+    pub(crate) fn set_pid(&mut self, pid: PidState<R>) {
         self.integral_n = pid.integral_n;
         self.derivative_m_per_s = pid.derivative_m_per_s;
         self.previous_position_m = pid.previous_position_m;

@@ -4,10 +4,12 @@
 //! its deflection ([`Bristle`]). That common form is all the plant needs to step any law, stuck or
 //! sliding, without iteration. To add a law: one file here, one variant of [`Joint`].
 
+mod directional_lugre;
 mod engagement;
 mod lugre;
 mod two_region;
 
+pub use directional_lugre::DirectionalLugre;
 pub use engagement::engaged_level;
 pub use lugre::Lugre;
 pub use two_region::TwoRegion;
@@ -71,6 +73,20 @@ pub struct JointState<R> {
     pub sliding: R,
 }
 
+/// What the plant asks of friction. Laws of a part in its joint are in [`Joint`]; a rig's friction
+/// ([`DirectionalLugre`]) goes through the same steps.
+pub trait Law<R: Real> {
+    /// The law's events at the start of a step: a bristle that breaks loose or catches again.
+    fn settle(&self, state: JointState<R>, x: R, v: R, level_factor: R) -> JointState<R>;
+
+    /// The law's bristle with velocity and position frozen at `v` and `x`, its friction level
+    /// multiplied by `level_factor`.
+    fn freeze(&self, state: &JointState<R>, x: R, v: R, level_factor: R) -> Bristle<R>;
+
+    /// l_f in m, where contact ends.
+    fn engagement_length_m(&self) -> R;
+}
+
 /// A seized joint: one of the friction laws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
@@ -91,34 +107,6 @@ impl<R: Real> Joint<R> {
         }
     }
 
-    /// The law's events at the start of a step: a bristle that breaks loose or catches again.
-    #[inline(always)]
-    pub fn settle(&self, state: JointState<R>, x: R, v: R, level_factor: R) -> JointState<R> {
-        match self {
-            Self::Lugre(_) => state,
-            Self::TwoRegion(law) => law.settle(state, x, v, level_factor),
-        }
-    }
-
-    /// The law's bristle with velocity and position frozen at `v` and `x`, its friction level
-    /// multiplied by `level_factor`.
-    #[inline(always)]
-    pub fn freeze(&self, state: &JointState<R>, x: R, v: R, level_factor: R) -> Bristle<R> {
-        match self {
-            Self::Lugre(law) => law.freeze(x, v, level_factor),
-            Self::TwoRegion(law) => law.freeze(state),
-        }
-    }
-
-    /// l_f in m, where contact ends.
-    #[inline(always)]
-    pub fn engagement_length_m(&self) -> R {
-        match self {
-            Self::Lugre(law) => law.engagement_length_m,
-            Self::TwoRegion(law) => law.engagement_length_m,
-        }
-    }
-
     /// k_e in N/m.
     #[inline(always)]
     pub fn stiffness_n_per_m(&self) -> R {
@@ -134,6 +122,32 @@ impl<R: Real> Joint<R> {
         match self {
             Self::Lugre(law) => law.stiction(x),
             Self::TwoRegion(law) => law.stiction(x),
+        }
+    }
+}
+
+impl<R: Real> Law<R> for Joint<R> {
+    #[inline(always)]
+    fn settle(&self, state: JointState<R>, x: R, v: R, level_factor: R) -> JointState<R> {
+        match self {
+            Self::Lugre(_) => state,
+            Self::TwoRegion(law) => law.settle(state, x, v, level_factor),
+        }
+    }
+
+    #[inline(always)]
+    fn freeze(&self, state: &JointState<R>, x: R, v: R, level_factor: R) -> Bristle<R> {
+        match self {
+            Self::Lugre(law) => law.freeze(x, v, level_factor),
+            Self::TwoRegion(law) => law.freeze(state),
+        }
+    }
+
+    #[inline(always)]
+    fn engagement_length_m(&self) -> R {
+        match self {
+            Self::Lugre(law) => law.engagement_length_m,
+            Self::TwoRegion(law) => law.engagement_length_m,
         }
     }
 }

@@ -1,0 +1,256 @@
+//! A rig with a moving part whose friction is to be identified: what a log of it should show.
+
+use crate::actuator::ForceRange;
+use crate::control::{Cascade, CascadeState, ControllerState, Measurement, Pid};
+use crate::disturbance::Factors;
+use crate::joint::{DirectionalLugre, JointState, Law};
+use crate::plant::{Integrator, Plant, PlantState, impose_motion};
+use crate::real::Real;
+
+/// A part on a rig.
+///
+/// ```text
+/// m dv/dt = F − R(x, v, z) − F_0 − k_r x
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rig<R> {
+    /// m in kg.
+    pub mass_kg: R,
+    /// k_r in N/m: a spring of the rig itself, such as a cable or a bellows.
+    pub spring_n_per_m: R,
+    /// F_0 in N: a constant force of the rig, such as a weight or the zero of a load cell.
+    pub offset_n: R,
+    /// R, the friction.
+    pub friction: DirectionalLugre<R>,
+}
+
+/// The names of the numbers of a rig, in the order of [`Rig::from_numbers`].
+pub const RIG_NUMBERS: [&str; 13] = [
+    "mass_kg",
+    "spring_n_per_m",
+    "coulomb_positive_n",
+    "coulomb_negative_n",
+    "viscous_positive_n_s_per_m",
+    "viscous_negative_n_s_per_m",
+    "stiction_ratio",
+    "stribeck_velocity_m_per_s",
+    "stiffness_n_per_m",
+    "damping_n_s_per_m",
+    "coulomb_slope_n_per_m",
+    "elastic_share",
+    "offset_n",
+];
+
+/// A PID within limits of its force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+pub struct LimitedPid<R> {
+    /// The PID.
+    pub pid: Pid<R>,
+    /// The largest force either way, N.
+    pub force_limit_n: R,
+}
+
+/// What moves the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
+pub enum Drive<R> {
+    /// Its motion is imposed: force is predicted from the measured motion.
+    Imposed,
+    /// The measured force: motion is predicted.
+    Force,
+    /// A cascade that follows the reference: both are predicted.
+    Cascade(Cascade<R>),
+    /// A PID that follows the reference: both are predicted.
+    Pid(LimitedPid<R>),
+}
+
+/// A row of a log, and the interval up to the next row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<R> {
+    /// x in m.
+    pub position_m: R,
+    /// v in m/s.
+    pub velocity_m_per_s: R,
+    /// dv/dt in m/s².
+    pub acceleration_m_per_s2: R,
+    /// F in N.
+    pub force_n: R,
+    /// r in m.
+    pub reference_m: R,
+    /// dr/dt in m/s.
+    pub reference_rate_m_per_s: R,
+    /// Time to the next row, s.
+    pub period_s: R,
+    /// Travel to the next row over that time, m/s.
+    pub mean_velocity_m_per_s: R,
+    /// F between this row and the next, N.
+    pub held_force_n: R,
+}
+
+impl Row<f64> {
+    /// The row as constants of another number.
+    #[inline(always)]
+    pub fn constant<R: Real>(&self) -> Row<R> {
+        Row {
+            position_m: R::constant(self.position_m),
+            velocity_m_per_s: R::constant(self.velocity_m_per_s),
+            acceleration_m_per_s2: R::constant(self.acceleration_m_per_s2),
+            force_n: R::constant(self.force_n),
+            reference_m: R::constant(self.reference_m),
+            reference_rate_m_per_s: R::constant(self.reference_rate_m_per_s),
+            period_s: R::constant(self.period_s),
+            mean_velocity_m_per_s: R::constant(self.mean_velocity_m_per_s),
+            held_force_n: R::constant(self.held_force_n),
+        }
+    }
+}
+
+impl Drive<f64> {
+    /// The drive with its numbers as constants of another number.
+    pub fn constant<R: Real>(&self) -> Drive<R> {
+        match self {
+            Self::Imposed => Drive::Imposed,
+            Self::Force => Drive::Force,
+            Self::Cascade(c) => Drive::Cascade(Cascade {
+                position_gain_per_s: R::constant(c.position_gain_per_s),
+                velocity_gain_n_s_per_m: R::constant(c.velocity_gain_n_s_per_m),
+                force_limit_n: R::constant(c.force_limit_n),
+            }),
+            Self::Pid(c) => Drive::Pid(LimitedPid {
+                pid: c.pid.map(&mut |_, value| R::constant(value)),
+                force_limit_n: R::constant(c.force_limit_n),
+            }),
+        }
+    }
+}
+
+/// What the model says of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Predicted<R> {
+    /// x in m.
+    pub position_m: R,
+    /// F in N.
+    pub force_n: R,
+}
+
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigState<R> {
+    plant: PlantState<R>,
+    cascade: CascadeState<R>,
+    pid: ControllerState<R>,
+}
+
+impl<R: Real> Rig<R> {
+    /// A rig from its numbers, in the order of [`RIG_NUMBERS`]; LuGre unless `elasto_plastic`.
+    #[inline(always)]
+    pub fn from_numbers(numbers: &[R; 13], elasto_plastic: bool) -> Self {
+        Self {
+            mass_kg: numbers[0],
+            spring_n_per_m: numbers[1],
+            friction: DirectionalLugre {
+                coulomb_positive_n: numbers[2],
+                coulomb_negative_n: numbers[3],
+                viscous_positive_n_s_per_m: numbers[4],
+                viscous_negative_n_s_per_m: numbers[5],
+                stiction_ratio: numbers[6],
+                stribeck_velocity_m_per_s: numbers[7],
+                stiffness_n_per_m: numbers[8],
+                damping_n_s_per_m: numbers[9],
+                coulomb_slope_n_per_m: numbers[10],
+                elastic_share: if elasto_plastic { Some(numbers[11]) } else { None },
+            },
+            offset_n: numbers[12],
+        }
+    }
+
+    /// The state at a measured row: its motion, and the bristle that balances its forces.
+    #[inline(always)]
+    pub fn start(&self, row: &Row<R>) -> RigState<R> {
+        let (x, v) = (row.position_m, row.velocity_m_per_s);
+        let inertial = self.mass_kg * row.acceleration_m_per_s2;
+        let friction_n = row.force_n - inertial - self.rig_force(x);
+        let bristle_m = self.friction.deflection_under(friction_n, x, v);
+        let plant = PlantState {
+            position_m: x,
+            velocity_m_per_s: v,
+            bristle_m,
+            joint_force_n: friction_n,
+            ..PlantState::at_rest()
+        };
+        let mut pid = ControllerState::at_rest(x - v * row.period_s);
+        pid.derivative_m_per_s = row.reference_rate_m_per_s - v;
+        RigState { plant, cascade: CascadeState::moving(x, v, row.period_s), pid }
+    }
+
+    #[inline(always)]
+    fn rig_force(&self, x: R) -> R {
+        self.spring_n_per_m.mul_add(x, self.offset_n)
+    }
+
+    /// What the model says of a row, and the state at the next one, `steps` steps later.
+    #[inline(always)]
+    pub fn step(
+        &self,
+        drive: &Drive<R>,
+        state: &mut RigState<R>,
+        row: &Row<R>,
+        steps: u32,
+    ) -> Predicted<R> {
+        let force_n = match drive {
+            Drive::Imposed => return self.follow_motion(state, row, steps),
+            Drive::Force => row.held_force_n,
+            Drive::Cascade(cascade) => {
+                let x = state.plant.position_m;
+                cascade.step(&mut state.cascade, row.reference_m, x, row.period_s)
+            }
+            Drive::Pid(c) => self.pid_force(c, state, row),
+        };
+        let predicted = Predicted { position_m: state.plant.position_m, force_n };
+        let h = row.period_s * R::constant(1.0 / f64::from(steps));
+        let factors = Factors { joint_force: R::one(), friction_level: R::one() };
+        for _ in 0..steps {
+            let force_n = force_n - self.rig_force(state.plant.position_m);
+            let plant = Plant { joint: &self.friction, mass_kg: self.mass_kg, force_n, factors };
+            plant.step(Integrator::LinearlyImplicitMidpoint, &mut state.plant, h);
+        }
+        predicted
+    }
+
+    #[inline(always)]
+    fn pid_force(&self, limited: &LimitedPid<R>, state: &mut RigState<R>, row: &Row<R>) -> R {
+        let range = ForceRange { min_n: -limited.force_limit_n, max_n: limited.force_limit_n };
+        let measured = Measurement {
+            reference_m: row.reference_m,
+            reference_rate_m_per_s: row.reference_rate_m_per_s,
+            position_m: state.plant.position_m,
+            velocity_m_per_s: state.plant.velocity_m_per_s,
+            period_s: row.period_s,
+            range,
+        };
+        let mut moving = state.pid.pid();
+        let force = limited.pid.step(&mut moving, &measured);
+        state.pid.set_pid(moving);
+        range.limit(force)
+    }
+
+    /// The force at a row whose motion is measured; the bristle follows to the next row.
+    #[inline(always)]
+    fn follow_motion(&self, state: &mut RigState<R>, row: &Row<R>, steps: u32) -> Predicted<R> {
+        let (x, v) = (row.position_m, row.velocity_m_per_s);
+        let z = state.plant.bristle_m;
+        let joint = JointState { bristle_m: z, sliding: R::zero() };
+        let bristle = self.friction.freeze(&joint, x, v, R::one());
+        let friction_n = bristle.force(v, z, bristle.rate(v, z));
+        let force_n =
+            self.mass_kg.mul_add(row.acceleration_m_per_s2, friction_n + self.rig_force(x));
+        state.plant.position_m = x;
+        let h = row.period_s * R::constant(1.0 / f64::from(steps));
+        for _ in 0..steps {
+            impose_motion(&self.friction, &mut state.plant, row.mean_velocity_m_per_s, h);
+        }
+        Predicted { position_m: x, force_n }
+    }
+}
