@@ -8,7 +8,7 @@ import pytest
 from scipy.io import savemat
 
 from breakaway.errors import LogError
-from breakaway.logs import read_emps, read_log
+from breakaway.logs import read_log
 
 EMPS = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"
 
@@ -26,7 +26,7 @@ def save(folder: Path, content: dict[str, Any], **options: Any) -> Path:
 
 @pytest.mark.skipif(not EMPS.is_file(), reason="the measured logs (../shared/data) are absent")
 def test_reads_the_measured_log() -> None:
-    log = read_log(EMPS, format="emps")
+    log = read_log(EMPS)
     assert (log.rows, log.name, log.ignored_columns) == (24841, "DATA_EMPS.mat", ("kp", "kv"))
     assert log.sample_rate_hz == pytest.approx(1000.0, rel=1e-6)
     assert log.reference_m is not None
@@ -36,7 +36,7 @@ def test_reads_the_measured_log() -> None:
 
 @pytest.mark.parametrize("version", ["4", "5"])
 def test_force_is_gain_times_volts(tmp_path: Path, version: str) -> None:
-    log = read_emps(save(tmp_path, variables() | {"pulses_N": 1.0}, format=version))
+    log = read_log(save(tmp_path, variables() | {"pulses_N": 1.0}, format=version))
     np.testing.assert_array_equal(log.force_n, 70.0)
     assert (log.reference_m, log.ignored_columns) == (None, ("pulses_N",))
 
@@ -47,18 +47,17 @@ def test_force_is_gain_times_volts(tmp_path: Path, version: str) -> None:
         ({"gtau": 0.0}, "variable 'gtau' is .*not 0"),
         ({"gtau": np.nan}, "variable 'gtau' is .*one finite drive gain"),
         ({"gtau": [1.0, 2.0]}, "variable 'gtau' is .*one finite drive gain"),
-        ({"qm": "text"}, "variable 'qm' is an array of type .*vector of real numbers"),
-        ({"qm": np.ones((30, 2))}, r"variable 'qm' .* shape \(30, 2\)"),
-        ({"qm": np.ones(30) * 1j}, "variable 'qm' is an array of type complex128"),
-        ({"qm": np.zeros((0, 0))}, r"variable 'qm' .* shape \(0, 0\)"),
+        ({"qm": "text"}, "column 'qm': is of class char; it must be a vector of real numbers"),
+        ({"qm": np.ones((30, 2))}, r"column 'qm'.* shape \(30, 2\)"),
+        ({"qm": np.ones(30) * 1j}, "column 'qm': is of type complex"),
+        ({"qm": np.zeros((0, 0))}, r"column 'qm'.* shape \(0, 0\)"),
         ({"vir": np.full(30, np.nan)}, "column 'force_n', row 1: nan is not a measurement"),
         ({"vir": np.ones(29)}, "column 'force_n' has 29 rows and 't_s' has 30"),
-        ({"t": np.zeros(30)}, "column 't_s', row 2: 0 s repeats 0 s"),
     ],
 )
 def test_refuses(tmp_path: Path, change: dict[str, Any], words: str) -> None:
     with pytest.raises(LogError, match=words):
-        read_emps(save(tmp_path, variables() | change))
+        read_log(save(tmp_path, variables() | change))
 
 
 @pytest.mark.parametrize("name", ["t", "qm", "vir", "gtau"])
@@ -66,23 +65,23 @@ def test_names_the_missing_variable_and_the_nearest(tmp_path: Path, name: str) -
     content = variables()
     content[f"{name}2"] = content.pop(name)
     with pytest.raises(LogError, match=f"variable '{name}' is missing; the nearest.*'{name}2'"):
-        read_emps(save(tmp_path, content))
+        read_log(save(tmp_path, content), format="emps")
 
 
 @pytest.mark.parametrize(
     ("data", "words"),
     [
         (b"", "the file is empty"),
-        (b"t_s,position_m,force_n\n0,0,0\n", "is not a MATLAB file of version 4 to 7"),
-        (b"\0" * 10, "is not a MATLAB file of version 4 to 7"),
-        (b"MATLAB 7.3 MAT-file, Platform", "is a MATLAB 7.3 .*'-v7'"),
+        (b"t_s,position_m,force_n\n0,0,0\n", "is not a MATLAB file"),
+        (b"\0" * 10, "is not a MATLAB file"),
+        (b"MATLAB 7.3 MAT-file, Platform", "is not a MATLAB 7.3 file"),
     ],
 )
 def test_refuses_other_files(tmp_path: Path, data: bytes, words: str) -> None:
     path = tmp_path / "other.mat"
     path.write_bytes(data)
     with pytest.raises(LogError, match=words):
-        read_emps(path)
+        read_log(path, format="emps")
 
 
 def test_refuses_a_file_that_was_cut_off(tmp_path: Path) -> None:
@@ -91,9 +90,9 @@ def test_refuses_a_file_that_was_cut_off(tmp_path: Path) -> None:
     for size in range(1, len(whole), 37):
         path.write_bytes(whole[:size])
         with pytest.raises(LogError, match=r"small\.mat"):
-            read_emps(path)
+            read_log(path, format="emps")
 
 
 def test_refuses_a_missing_file(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="there is no such file"):
-        read_emps(tmp_path / "none.mat")
+        read_log(tmp_path / "none.mat", format="emps")

@@ -72,7 +72,7 @@ impl Record {
             numbers[SHARED] = number.at(SHARED + s);
             let rig = Rig::from_numbers(&numbers, self.elasto_plastic);
             let rows = &self.rows[segment.clone()];
-            let mut state = rig.start(&rows[0].constant());
+            let mut state = rig.start(&drive, &rows[0].constant());
             for row in rows {
                 let predicted = rig.step(&drive, &mut state, &row.constant(), self.steps);
                 keep.row(row, predicted);

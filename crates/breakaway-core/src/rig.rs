@@ -1,10 +1,10 @@
 //! A rig with a moving part whose friction is to be identified: what a log of it should show.
 
 use crate::actuator::ForceRange;
-use crate::control::{Cascade, CascadeState, ControllerState, Measurement, Pid};
+use crate::control::{Cascade, CascadeState, ControllerState, DerivativeOf, Measurement, Pid};
 use crate::disturbance::Factors;
 use crate::joint::{DirectionalLugre, JointState, Law};
-use crate::plant::{Integrator, Plant, PlantState, impose_motion};
+use crate::plant::{Integrator, Plant, PlantState};
 use crate::real::Real;
 
 /// A part on a rig.
@@ -166,9 +166,10 @@ impl<R: Real> Rig<R> {
         }
     }
 
-    /// The state at a measured row: its motion, and the bristle that balances its forces.
+    /// The state at a measured row: its motion, the bristle that balances its forces, and a PID's
+    /// integral that gives its force.
     #[inline(always)]
-    pub fn start(&self, row: &Row<R>) -> RigState<R> {
+    pub fn start(&self, drive: &Drive<R>, row: &Row<R>) -> RigState<R> {
         let (x, v) = (row.position_m, row.velocity_m_per_s);
         let inertial = self.mass_kg * row.acceleration_m_per_s2;
         let friction_n = row.force_n - inertial - self.rig_force(x);
@@ -180,9 +181,25 @@ impl<R: Real> Rig<R> {
             joint_force_n: friction_n,
             ..PlantState::at_rest()
         };
-        let mut pid = ControllerState::at_rest(x - v * row.period_s);
-        pid.derivative_m_per_s = row.reference_rate_m_per_s - v;
-        RigState { plant, cascade: CascadeState::moving(x, v, row.period_s), pid }
+        let pid = ControllerState::at_rest(x - v * row.period_s);
+        let mut state = RigState { plant, cascade: CascadeState::moving(x, v, row.period_s), pid };
+        if let Drive::Pid(limited) = drive {
+            self.start_pid(limited, &mut state, row);
+        }
+        state
+    }
+
+    #[inline(always)]
+    fn start_pid(&self, limited: &LimitedPid<R>, state: &mut RigState<R>, row: &Row<R>) {
+        let v = row.velocity_m_per_s;
+        state.pid.derivative_m_per_s = match limited.pid.derivative_of {
+            DerivativeOf::Error => row.reference_rate_m_per_s - v,
+            DerivativeOf::Measurement => -v,
+        };
+        let mut unbiased = *state;
+        let missing = row.force_n - self.pid_force(limited, &mut unbiased, row);
+        let integrates = R::zero().lt(limited.pid.gains.ki_n_per_m_s);
+        state.pid.integral_n = R::select(integrates, missing, R::zero());
     }
 
     #[inline(always)]
@@ -212,7 +229,9 @@ impl<R: Real> Rig<R> {
         let h = row.period_s * R::constant(1.0 / f64::from(steps));
         let factors = Factors { joint_force: R::one(), friction_level: R::one() };
         for _ in 0..steps {
-            let force_n = force_n - self.rig_force(state.plant.position_m);
+            let half = R::constant(0.5) * h;
+            let x_mid = half.mul_add(state.plant.velocity_m_per_s, state.plant.position_m);
+            let force_n = force_n - self.rig_force(x_mid);
             let plant = Plant { joint: &self.friction, mass_kg: self.mass_kg, force_n, factors };
             plant.step(Integrator::LinearlyImplicitMidpoint, &mut state.plant, h);
         }
@@ -249,8 +268,34 @@ impl<R: Real> Rig<R> {
         state.plant.position_m = x;
         let h = row.period_s * R::constant(1.0 / f64::from(steps));
         for _ in 0..steps {
-            impose_motion(&self.friction, &mut state.plant, row.mean_velocity_m_per_s, h);
+            self.carry_bristle(&mut state.plant, row.mean_velocity_m_per_s, h);
         }
         Predicted { position_m: x, force_n }
+    }
+
+    /// Moves the part at `v` for `h`. With velocity and level frozen the bristle's equation has the
+    /// solution
+    ///
+    /// ```text
+    /// z ← z e^(−y) + v h (1 − e^(−y)) / y,     y = h α k_e |v| / g
+    /// ```
+    ///
+    /// which is used as it stands: a log's rows may be far apart for a stiff bristle, whose value at
+    /// a row would ring with the midpoint rule. Below y = 1e-4 its series replaces the quotient. An
+    /// elastic step that ends beyond the level, as α is taken before it, ends at the level.
+    #[inline(always)]
+    fn carry_bristle(&self, state: &mut PlantState<R>, v: R, h: R) {
+        let z = state.bristle_m;
+        let joint = JointState { bristle_m: z, sliding: R::zero() };
+        let x_mid = (R::constant(0.5) * h).mul_add(v, state.position_m);
+        let b = self.friction.freeze(&joint, x_mid, v, R::one());
+        let y = h * b.relaxation() / b.friction_level_n;
+        let small = R::constant(1e-4);
+        let kept = (-y).exp();
+        let series = R::one() - y * (R::constant(0.5) - y * R::constant(1.0 / 6.0));
+        let share = R::select(y.lt(small), series, (R::one() - kept) / y.max(small));
+        let reach = (b.friction_level_n / b.stiffness_n_per_m).max(z.abs());
+        state.bristle_m = z.mul_add(kept, v * h * share).clamp(-reach, reach);
+        state.position_m = h.mul_add(v, state.position_m);
     }
 }

@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from breakaway.errors import LogError
-from breakaway.identification.regression import TRIM_PER_DECIMATION, Motion
+from breakaway.identification.regression import TRIM_PER_DECIMATION
+from breakaway.logs.derived import Motion
 from breakaway.logs.log import Log
 
 SPACING_TOLERANCE = 0.01
@@ -30,7 +31,8 @@ SIGNIFICANCE = 3.0
 
 
 def check_settings(log: Log, lowpass_hz: float, decimation: int) -> None:
-    """Raise `LogError` for filter settings outside their range, for this log."""
+    """Raise `LogError` for stamps that do not increase, or for settings outside their range."""
+    log.check_increasing()
     if isinstance(decimation, bool) or not isinstance(decimation, int) or decimation < 1:
         raise LogError(f"decimation is {decimation!r}; it must be a whole number of at least 1")
     rate = log.sample_rate_hz

@@ -20,9 +20,9 @@ from breakaway.identification.regression import (
     TRIM_PER_DECIMATION,
     Solution,
     least_squares,
-    motion,
     parallel_filter,
 )
+from breakaway.logs.derived import derive_motion
 from breakaway.logs.log import Array, Log
 
 NOT_IDENTIFIED: Mapping[str, str] = {
@@ -171,7 +171,7 @@ def identify_inertia_friction(
     """
     check_settings(log, lowpass_hz, decimation)
     check_sampling(log, decimation)
-    moved = motion(log, lowpass_hz)
+    moved = derive_motion(log, lowpass_hz)
     check_motion(log, moved)
     speed, sign = moved.velocity_m_per_s, np.sign(moved.velocity_m_per_s)
     mass, up, down = moved.acceleration_m_per_s2, speed > 0.0, speed < 0.0

@@ -10,27 +10,11 @@ from scipy import signal
 from breakaway.errors import LogError
 from breakaway.logs.log import Array, Log
 
-LOWPASS_ORDER = 4
-"""Order of the Butterworth low-pass on position; run both ways it counts twice."""
-
 TRIM_PER_DECIMATION = 10
 """Samples cut off at either end, times ``decimation``: there the filters still ring."""
 
 CONDITION_LIMIT = 30.0
 """Above this condition number of the scaled columns, collinearity is harmful (Belsley, 1980)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """Filtered motion at the log's own rate, with its noise.
-
-    ``noise_m`` is the standard deviation of what the low-pass took out of the position.
-    """
-
-    position_m: Array
-    velocity_m_per_s: Array
-    acceleration_m_per_s2: Array
-    noise_m: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,20 +27,6 @@ class Solution:
     samples: int
     condition_number: float
     residual_autocorrelation: float
-
-
-def motion(log: Log, lowpass_hz: float) -> Motion:
-    """Return position, velocity and acceleration behind a low-pass without phase.
-
-    A Butterworth filter of order 4 runs forward and backward over the position; velocity and
-    acceleration are central differences, v_k = (x_{k+1} - x_{k-1}) / (2 h), and so again.
-    """
-    rate = log.sample_rate_hz
-    low = signal.butter(LOWPASS_ORDER, lowpass_hz, fs=rate, output="sos")
-    position = np.asarray(signal.sosfiltfilt(low, log.position_m), dtype=np.float64)
-    velocity = np.gradient(position, 1.0 / rate)
-    acceleration = np.gradient(velocity, 1.0 / rate)
-    return Motion(position, velocity, acceleration, float(np.std(log.position_m - position)))
 
 
 def parallel_filter(columns: Array, decimation: int) -> Array:

@@ -66,6 +66,11 @@ impl<R: Real> DirectionalLugre<R> {
     #[inline(always)]
     pub fn level(&self, x: R, v: R) -> R {
         let coulomb = self.of_direction(v, self.coulomb_positive_n, self.coulomb_negative_n);
+        self.level_of(coulomb, x, v)
+    }
+
+    #[inline(always)]
+    fn level_of(&self, coulomb: R, x: R, v: R) -> R {
         let level = self.coulomb_slope_n_per_m.mul_add(x, coulomb);
         let v_s = self.stribeck_velocity_m_per_s;
         let decay = (v * v * (-R::constant(LOG2_E) / (v_s * v_s))).exp2();
@@ -88,12 +93,13 @@ impl<R: Real> DirectionalLugre<R> {
     }
 
     /// The deflection in m at which a rig starts whose friction force is `friction_n` at position
-    /// `x` and velocity `v`: that of the elastic force, at most at the level.
+    /// `x` and velocity `v`: that of the elastic force, at most at the level of its direction.
     #[inline(always)]
     pub fn deflection_under(&self, friction_n: R, x: R, v: R) -> R {
         let viscous = self.viscous(v) * v;
-        let g = self.level(x, v);
-        (friction_n - viscous).clamp(-g, g) / self.stiffness_n_per_m
+        let forward = self.level_of(self.coulomb_positive_n, x, v);
+        let backward = self.level_of(self.coulomb_negative_n, x, v);
+        (friction_n - viscous).clamp(-backward, forward) / self.stiffness_n_per_m
     }
 
     #[inline(always)]

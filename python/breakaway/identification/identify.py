@@ -1,0 +1,627 @@
+"""Identify a joint from a log: the whole way from measured rows to parameters with intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from breakaway.errors import LogError
+from breakaway.identification.cascade import Cascade
+from breakaway.identification.guess import internal_guess, scales, stand_in
+from breakaway.identification.inertia_friction import identify_inertia_friction
+from breakaway.identification.laws import Law, Layout, check_law
+from breakaway.identification.output_error import (
+    LOSSES,
+    Minimum,
+    Problem,
+    Progress,
+    minimize_all,
+    screened_starts,
+)
+from breakaway.identification.prediction import Prediction, predict_rows
+from breakaway.identification.record import (
+    MOTIONS,
+    MotionKind,
+    Rows,
+    RunSettings,
+    Span,
+    core_record,
+    measured_rows,
+    predicted_channel,
+    segments_of,
+)
+from breakaway.identification.uncertainty import (
+    NOT_IDENTIFIABLE,
+    Covariance,
+    Posterior,
+    Profile,
+    covariance,
+    interval,
+    posterior,
+    profile,
+)
+from breakaway.identification.verdicts import Verdict, excitation, unexcited, verdicts
+from breakaway.logs.log import Array, Log
+from breakaway.scenario.controller import Pid
+
+Method = Literal["least_squares", "output_error"]
+MOST_EVALUATIONS = 100
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: its value, standard error and 95 % interval.
+
+    ``standard_error`` is that of the value; the interval of a positive parameter is that of its
+    logarithm, so it is not symmetric. ``identifiable`` is whether the log tells it.
+    """
+
+    name: str
+    value: float
+    standard_error: float
+    low: float
+    high: float
+    identifiable: bool
+    remark: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """A joint as one log tells it.
+
+    ``estimates`` are the parameters that were fitted, ``fixed`` those that were held.
+    ``converged`` is whether the best start was done, ``complete`` whether no Ctrl-C cut the fit
+    short: what is given then is the best so far.
+    """
+
+    log: Log
+    law: Law
+    settings: RunSettings
+    spans: tuple[Span, ...]
+    estimates: tuple[Estimate, ...]
+    fixed: Mapping[str, float]
+    rms_error: float
+    relative_error_percent: float
+    residual_autocorrelation: float
+    effective_rows: float
+    condition_number: float
+    verdicts: tuple[Verdict, ...]
+    notes: tuple[str, ...]
+    converged: bool
+    complete: bool
+    starts: int
+    starts_agreeing: int
+    seed: int
+    loss: str
+    fit: Prediction
+    internals: Internals = field(repr=False)
+
+    @property
+    def channel(self) -> str:
+        """The channel whose error was made small."""
+        return self.internals.problem.channel
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted parameters by name."""
+        return {one.name: one.value for one in self.estimates}
+
+    @property
+    def aic(self) -> float:
+        """Akaike's information criterion, for the effective number of rows."""
+        return self.aic_for(self.effective_rows)
+
+    @property
+    def bic(self) -> float:
+        """Bayes' information criterion, for the effective number of rows."""
+        rows = self.effective_rows
+        return self.aic_for(rows) + (math.log(max(rows, 1.0)) - 2.0) * (len(self.estimates) + 1)
+
+    def aic_for(self, rows: float) -> float:
+        """Return n ln(s²) + 2 (p + 1), with n independent rows and s the RMS error.
+
+        Parameters
+        ----------
+        rows : float
+            n; laws that are compared have to be given the same.
+
+        """
+        deviance = rows * math.log(max(self.rms_error, 1e-300) ** 2)
+        return deviance + 2.0 * (len(self.estimates) + 1)
+
+    def __getitem__(self, name: str) -> Estimate:
+        for one in self.estimates:
+            if one.name == name:
+                return one
+        raise KeyError(name)
+
+    def predict(
+        self,
+        log: Log | None = None,
+        *,
+        spans: Sequence[Span] = (),
+        motion: MotionKind | None = None,
+    ) -> Prediction:
+        """Simulate rows with the identified parameters and compare them with what was measured.
+
+        Parameters
+        ----------
+        log : Log, optional
+            Another log of the same rig; by default the log that was identified.
+        spans : sequence of (start_s, end_s), optional
+            Spans that are simulated, each from its first measured row; by default the whole log.
+        motion : {'imposed', 'free', 'closed_loop'}, optional
+            By default as in the fit.
+
+        Returns
+        -------
+        Prediction
+            Where the fit had an offset for each repeat, the last repeat's is used.
+
+        Raises
+        ------
+        LogError
+            The log lacks a channel that the motion needs, or a span is empty.
+
+        """
+        settings = self.settings
+        if motion is not None:
+            _known("motion", motion, MOTIONS)
+            settings = RunSettings(**{**vars(settings), "motion": motion})
+        rows = measured_rows(self.log if log is None else log, settings)
+        numbers = self.internals.problem.layout.numbers(self.internals.best)
+        return predict_rows(rows, spans, self.law, settings, numbers)
+
+    def profile(self, name: str) -> Profile:
+        """Compute the profile likelihood of a parameter.
+
+        Parameters
+        ----------
+        name : str
+            One of the fitted parameters.
+
+        Raises
+        ------
+        LogError
+            The parameter was not fitted.
+
+        """
+        inner = self.internals
+        place = self._place(name)
+        error = math.sqrt(inner.covariance.matrix[place, place])
+        weight = inner.covariance.weight
+        return profile(inner.problem, inner.best, inner.bounds, place, error, weight)
+
+    def posterior(
+        self, samples: int = 10_000, *, seed: int = 0, progress: Progress | None = None
+    ) -> Posterior:
+        """Draw parameters from their posterior, given the log.
+
+        Parameters
+        ----------
+        samples : int
+            Draws to keep.
+        seed : int
+            The same seed gives the same draws.
+        progress : callable, optional
+            Called with steps done and steps in all.
+
+        Raises
+        ------
+        LogError
+            emcee is not installed; it is the extra ``posterior``.
+
+        """
+        inner = self.internals
+        spread = np.sqrt(np.minimum(np.diag(inner.covariance.matrix), 1.0))
+        return posterior(
+            inner.problem,
+            inner.best,
+            spread,
+            inner.bounds,
+            inner.covariance.weight,
+            samples,
+            seed,
+            progress,
+        )
+
+    def draws(self, samples: int, *, seed: int = 0) -> dict[str, Array]:
+        """Draw parameters from the normal distribution that the covariance gives.
+
+        Parameters
+        ----------
+        samples : int
+            How many.
+        seed : int
+            The same seed gives the same draws.
+
+        Notes
+        -----
+        Quicker than `posterior`, and rougher: parameters that are not identifiable are held.
+
+        """
+        inner = self.internals
+        told = [i for i, one in enumerate(self.estimates) if one.identifiable]
+        free = inner.problem.layout.free
+        at = np.tile(inner.best, (samples, 1))
+        rng = np.random.default_rng(seed)
+        matrix = inner.covariance.matrix[np.ix_(told, told)]
+        at[:, told] += rng.multivariate_normal(np.zeros(len(told)), matrix, samples)
+        return {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
+
+    def _place(self, name: str) -> int:
+        names = [one.name for one in self.estimates]
+        if name not in names:
+            raise LogError(f"parameter {name!r} was not fitted; it must be one of {', '.join(names)}")
+        return names.index(name)
+
+
+@dataclass(frozen=True, eq=False)
+class Internals:
+    """What a finished fit keeps for profiles, posteriors and predictions."""
+
+    problem: Problem
+    best: Array
+    bounds: tuple[Array, Array]
+    covariance: Covariance
+
+
+def identify(
+    log: Log,
+    *,
+    law: str = "lugre",
+    motion: str = "imposed",
+    asymmetric: bool = False,
+    position_dependent: bool = False,
+    controller: Cascade | Pid | None = None,
+    force_limit_n: float | None = None,
+    repeats: Sequence[Span] = (),
+    fixed: Mapping[str, float] | None = None,
+    free: Sequence[str] = (),
+    origin_m: float | None = None,
+    force_held: bool = True,
+    lowpass_hz: float | None = None,
+    steps_per_row: int = 1,
+    loss: str = "linear",
+    starts: int = 8,
+    seed: int = 0,
+    method: str = "output_error",
+    progress: Progress | None = None,
+) -> Identification:
+    """Identify a joint by output error: the parameters whose simulation is nearest to the log.
+
+    ::
+
+        m a = F - R - F_0 - k_r x,     R = k_e z + c dz/dt + σ± v,     dz/dt = v - α k_e |v| z / g
+        g   = (F_c± + s x) (1 + (ρ - 1) exp(-(v / v_s)²)),             ρ = F_s / F_c
+
+    The model is stepped by the same code as an extraction, with exact derivatives.
+
+    Parameters
+    ----------
+    log : Log
+        Position and force; with ``reference_m`` for a closed loop.
+    law : {'coulomb', 'stribeck', 'lugre', 'elasto_plastic'}
+        Coulomb and viscous friction (ρ = 1, no bristle); with ρ and v_s; with k_e and c; with an
+        elastic share of the deflection.
+    motion : {'imposed', 'free', 'closed_loop'}
+        ``imposed``: the measured motion is imposed and the force compared. ``free``: the measured
+        force moves the part and the position is compared. ``closed_loop``: the controller
+        follows the reference and its force is compared.
+    asymmetric : bool
+        Levels and viscous friction of their own in each direction; they hold the offset F_0.
+    position_dependent : bool
+        Fit s and k_r as well.
+    controller : Cascade or Pid, optional
+        For ``closed_loop``.
+    force_limit_n : float, optional
+        Where the force of a `Pid` saturates.
+    repeats : sequence of (start_s, end_s)
+        Spans that are fitted, each started from its first measured row with an offset of its own,
+        which shows the drift between repeats. By default the whole log as one. What lies
+        outside is not used. Gaps within a span split it.
+    fixed : mapping of str to float, optional
+        Parameters that are held. With imposed motion the mass is held at 0 unless it is given.
+    free : sequence of str
+        Parameters that are fitted although the log hardly excites them. Otherwise such are held
+        at a neutral value, and ``verdicts`` says so.
+    origin_m : float, optional
+        Position at which levels and offsets hold where they depend on position; by default the
+        middle of the travel.
+    force_held : bool
+        Whether the measured force of ``free`` motion holds from row to row; else it is linear.
+    lowpass_hz : float, optional
+        Cutoff of the low-pass that velocity and acceleration are taken from, where the log is
+        even; by default as `breakaway.logs.derived.default_lowpass_hz` says.
+    steps_per_row : int
+        Integrator steps from row to row.
+    loss : {'linear', 'soft_l1', 'huber', 'cauchy'}
+        All but the first are robust to outliers.
+    starts : int
+        Starts that are followed: the first guess, and the best of eight times as many draws.
+    seed : int
+        Of those draws.
+    method : {'output_error', 'least_squares'}
+        ``least_squares`` fits the law 'coulomb' to ``imposed`` motion, inertia included, where the
+        model is linear: see `identify_inertia_friction`.
+    progress : callable, optional
+        Called with starts done and starts in all.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    LogError
+        A setting is out of range, the log lacks a channel, never moves, or its force is 0.
+
+    Notes
+    -----
+    Ctrl-C ends the fit and gives the best so far, with ``complete`` False. Standard errors allow
+    for correlated residuals (Newey and West, 1987). Not checked: that the law holds; a model
+    that is wrong in another way than its residuals show has parameters that mean less than their
+    intervals say. `compare_laws` and held-out rows are the check.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t_s = np.arange(4000) / 1000.0
+    >>> x = 0.1 * np.sin(3 * t_s) + 0.02 * np.sin(11 * t_s)
+    >>> v = 0.3 * np.cos(3 * t_s) + 0.22 * np.cos(11 * t_s)
+    >>> log = Log(t_s=t_s, position_m=x, force_n=5.0 * np.sign(v) + 20.0 * v)
+    >>> found = identify(log, law="coulomb", starts=1)
+    >>> round(found.values["coulomb_n"], 1), round(found.values["viscous_n_s_per_m"])
+    (5.0, 20)
+
+    """
+    chosen = check_law(law, asymmetric, position_dependent)
+    _known("method", method, get_args(Method))
+    _known("motion", motion, MOTIONS)
+    _known("loss", loss, LOSSES)
+    _at_least_one("starts", starts)
+    _at_least_one("steps_per_row", steps_per_row)
+    settings = RunSettings(
+        motion=motion,  # type: ignore[arg-type]
+        controller=controller,
+        force_limit_n=force_limit_n,
+        force_held=force_held,
+        lowpass_hz=lowpass_hz,
+        steps=steps_per_row,
+        origin_m=_origin(log, position_dependent, origin_m),
+    )
+    rows = measured_rows(log, settings)
+    spans, segments, owners = segments_of(rows, repeats)
+    held = dict(fixed or {})
+    if motion == "imposed" and method == "output_error":
+        held.setdefault("mass_kg", 0.0)
+    places = np.concatenate([np.arange(first, end) for first, end in segments])
+    sizes = scales(rows, places, settings, held.get("mass_kg"))
+    parameters = chosen.parameters(len(spans))
+    names = [one.name for one in parameters]
+    _check_fixed({**held, **dict.fromkeys(free, 0.0)}, names)
+    open_names = [name for name in names if name not in held and name not in free]
+    back = unexcited(open_names, excitation(rows, places), settings)
+    held_back = {name: value for name, (value, _) in back.items()}
+    fixed_numbers = {**stand_in(chosen, settings, sizes), **held_back, **held}
+    layout = Layout.of(parameters, fixed_numbers, tuple(owners))
+    channel = predicted_channel(settings.motion)
+    measured = np.ascontiguousarray(rows.columns[0 if channel == "position_m" else 3][places])
+    scale = 0.05 * sizes.force_n if channel == "force_n" else 0.01 * sizes.travel_m
+    record = core_record(rows, segments, chosen, settings)
+    problem = Problem(record, layout, channel, measured, scale)
+    guess, spread, bounds = internal_guess(layout, sizes, settings)
+    if method == "least_squares":
+        best = Minimum(_regressed(log, layout, chosen, settings, repeats), 0.0, 1, converged=True)
+        complete, starts, agreeing = True, 1, 1
+    else:
+        drawn = screened_starts(problem, guess, spread, bounds, starts, seed)
+        minima, complete = minimize_all(problem, drawn, bounds, loss, MOST_EVALUATIONS, progress)
+        best = min(minima, key=lambda one: one.cost)
+        agreeing = sum(one.cost <= best.cost * (1.0 + 1e-4) for one in minima)
+    judged = tuple(verdict for _, verdict in back.values())
+    found = _Found(
+        log, chosen, settings, tuple(spans), held, judged, rows, problem, bounds, loss, seed
+    )
+    return found.result(best.internal, best.converged, complete, starts, agreeing)
+
+
+def _regressed(
+    log: Log, layout: Layout, law: Law, settings: RunSettings, repeats: Sequence[Span]
+) -> Array:
+    """Fit the linear law by regression; return the internal parameters."""
+    if law.name != "coulomb" or law.position_dependent or settings.motion != "imposed" or repeats:
+        raise LogError(
+            "method: 'least_squares' fits law 'coulomb' to imposed motion, the whole log at once; "
+            "take method 'output_error', or cut the log with `between`"
+        )
+    fit = identify_inertia_friction(log)
+    values = fit.asymmetric if law.asymmetric else fit.symmetric
+    found = [getattr(values, one.name) for one in layout.free]
+    for one, value in zip(layout.free, found, strict=True):
+        if one.positive and not value > 0.0:
+            raise LogError(
+                f"{log.name}: {one.name} comes out as {value:.4g} and must be > 0; record a log "
+                "whose speeds span a wider range"
+            )
+    return np.array([one.internal(value) for one, value in zip(layout.free, found, strict=True)])
+
+
+def _origin(log: Log, position_dependent: bool, origin_m: float | None) -> float:
+    if not position_dependent:
+        return 0.0
+    x = log.position_m
+    return 0.5 * float(x.min() + x.max()) if origin_m is None else origin_m
+
+
+def _known(name: str, value: str, allowed: Sequence[str]) -> None:
+    if value not in allowed:
+        raise LogError(f"{name}: {value!r} is not one of {', '.join(allowed)}")
+
+
+def _at_least_one(name: str, value: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise LogError(f"{name}: {value!r} is not a whole number of at least 1")
+
+
+def _check_fixed(fixed: Mapping[str, float], names: Sequence[str]) -> None:
+    for name, value in fixed.items():
+        if name not in names:
+            raise LogError(f"fixed: {name!r} is not a parameter of this law; they are {', '.join(names)}")
+        if not math.isfinite(value):
+            raise LogError(f"fixed.{name}: {value!r} is not a finite number")
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What a fit was asked, from which its result is made."""
+
+    log: Log
+    law: Law
+    settings: RunSettings
+    spans: tuple[Span, ...]
+    fixed: Mapping[str, float]
+    held_back: tuple[Verdict, ...]
+    rows: Rows
+    problem: Problem
+    bounds: tuple[Array, Array]
+    loss: str
+    seed: int
+
+    def result(
+        self,
+        best: Array,
+        converged: bool,
+        complete: bool,
+        starts: int,
+        agreeing: int,
+    ) -> Identification:
+        problem = self.problem
+        residual, slopes = problem.residual_and_slopes(best)
+        weighted = _robust(self.loss, residual)
+        known = covariance(weighted * residual, weighted[:, None] * slopes)
+        estimates = self._estimates(best, known)
+        errors = residual * problem.scale
+        rms = float(np.sqrt(np.mean(errors**2)))
+        power = float(residual @ residual)
+        measured = problem.measured
+        size = np.linalg.norm(measured if problem.channel == "force_n" else measured - measured[0])
+        judged = verdicts(estimates, self.held_back, self.law, self.fixed)
+        return Identification(
+            log=self.log,
+            law=self.law,
+            settings=self.settings,
+            spans=self.spans,
+            estimates=tuple(_with_verdict(one, judged) for one in estimates),
+            fixed=dict(self.fixed),
+            rms_error=rms,
+            relative_error_percent=100.0 * float(np.linalg.norm(errors) / size),
+            residual_autocorrelation=float(residual[1:] @ residual[:-1]) / max(power, 1e-300),
+            effective_rows=known.weight * len(residual),
+            condition_number=known.condition_number,
+            verdicts=judged,
+            notes=tuple(self._notes(best, known, complete, converged, starts, agreeing)),
+            converged=converged,
+            complete=complete,
+            starts=starts,
+            starts_agreeing=agreeing,
+            seed=self.seed,
+            loss=self.loss,
+            fit=predict_rows(
+                self.rows, self.spans, self.law, self.settings, problem.layout.numbers(best), same=True
+            ),
+            internals=Internals(problem, best, self.bounds, known),
+        )
+
+    def _estimates(self, best: Array, known: Covariance) -> list[Estimate]:
+        layout = self.problem.layout
+        slope = layout.slope(best)
+        low, high = self.bounds
+        out = []
+        for i, parameter in enumerate(layout.free):
+            error = math.sqrt(known.matrix[i, i])
+            at_end = best[i] - low[i] < 1e-6 * (high[i] - low[i]) or (
+                high[i] - best[i] < 1e-6 * (high[i] - low[i])
+            )
+            told = not at_end and (not parameter.positive or error < NOT_IDENTIFIABLE)
+            ends = interval(self.problem, best, i, error)
+            value = float(parameter.external(best[i : i + 1])[0])
+            remark = "at the end of its range" if at_end else ""
+            if not told and not at_end:
+                remark = f"known within a factor of {math.exp(min(2 * error, 50.0)):.2g} only"
+            out.append(Estimate(parameter.name, value, error * slope[i], *ends, told, remark))
+        return out
+
+    def _notes(
+        self,
+        best: Array,
+        known: Covariance,
+        complete: bool,
+        converged: bool,
+        starts: int,
+        agreeing: int,
+    ) -> list[str]:
+        notes = []
+        if not complete:
+            notes.append("stopped before it was done: these are the best parameters so far")
+        elif not converged:
+            notes.append(f"not converged within {MOST_EVALUATIONS} evaluations")
+        if starts > 1:
+            notes.append(f"{agreeing} of {starts} starts came to the same minimum")
+        if known.window > 0:
+            rows = known.weight * len(self.problem.measured)
+            notes.append(
+                f"residuals correlate over about {known.window} rows: {len(self.problem.measured)} "
+                f"rows tell as much as {rows:.0f} independent ones, which the errors allow for"
+            )
+        notes += [str(finding) for finding in self.log.findings]
+        return notes
+
+
+def _robust(loss: str, residual: Array) -> Array:
+    """Return the square root of a robust loss's weights, ρ'(r²)^½."""
+    z = residual**2
+    if loss == "soft_l1":
+        return (1.0 + z) ** -0.25
+    if loss == "huber":
+        return np.where(z <= 1.0, 1.0, np.maximum(z, 1e-300) ** -0.25)
+    if loss == "cauchy":
+        return (1.0 + z) ** -0.5
+    return np.ones_like(residual)
+
+
+def _with_verdict(estimate: Estimate, judged: Sequence[Verdict]) -> Estimate:
+    for one in judged:
+        if one.parameter == estimate.name and not one.identifiable and estimate.identifiable:
+            return Estimate(**{**vars(estimate), "identifiable": False, "remark": one.because})
+    return estimate
+
+
+def as_dict(found: Identification) -> dict[str, Any]:
+    """Return the figures of an identification as plain values, for JSON."""
+    return {
+        "log": found.log.name,
+        "law": found.law.name,
+        "asymmetric": found.law.asymmetric,
+        "position_dependent": found.law.position_dependent,
+        "motion": found.settings.motion,
+        "estimates": [vars(one) for one in found.estimates],
+        "fixed": dict(found.fixed),
+        "channel": found.channel,
+        "rms_error": found.rms_error,
+        "relative_error_percent": found.relative_error_percent,
+        "residual_autocorrelation": found.residual_autocorrelation,
+        "aic": found.aic,
+        "bic": found.bic,
+        "condition_number": found.condition_number,
+        "verdicts": [vars(one) for one in found.verdicts],
+        "notes": list(found.notes),
+        "converged": found.converged,
+        "complete": found.complete,
+        "starts": found.starts,
+        "starts_agreeing": found.starts_agreeing,
+    }

@@ -1,0 +1,188 @@
+"""Output error: the parameters whose simulation comes closest to what was measured."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from breakaway._core import RigRecord
+from breakaway.identification.laws import Layout
+from breakaway.logs.log import Array
+
+LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+"""Losses of `scipy.optimize.least_squares` that can be chosen; all but the first are robust."""
+
+HOPELESS = 1e6
+"""Residual, in units of the scale, that stands for a simulation that is not finite."""
+
+SCREENED_PER_START = 8
+"""Random sets of parameters that are tried, in lanes, for each start that is followed up."""
+
+Progress = Callable[[int, int], None]
+"""Called with how many starts are done, and of how many."""
+
+
+class Stopped(Exception):  # noqa: N818 - it is a request, no failure
+    """Raised inside a fit that was asked to stop."""
+
+
+@dataclass
+class Problem:
+    """One record, one layout of parameters, and the channel whose error is made small.
+
+    Residuals are divided by ``scale``, so that they are near 1 where the model is as good as the
+    measurement.
+    """
+
+    record: RigRecord
+    layout: Layout
+    channel: str
+    measured: Array
+    scale: float
+    stop: threading.Event = field(default_factory=threading.Event)
+
+    @property
+    def _place(self) -> int:
+        return 0 if self.channel == "position_m" else 1
+
+    def predicted(self, internal: Array) -> Array:
+        """Simulate the channel."""
+        numbers = self.layout.numbers(internal).tolist()
+        return np.frombuffer(self.record.simulate(numbers)[self._place])
+
+    def residual(self, internal: Array) -> Array:
+        """Return (simulated - measured) / scale."""
+        if self.stop.is_set():
+            raise Stopped
+        with np.errstate(over="ignore", invalid="ignore"):
+            return _finite((self.predicted(internal) - self.measured) / self.scale)
+
+    def residual_and_slopes(self, internal: Array) -> tuple[Array, Array]:
+        """Return the residual and its derivatives with respect to the internal parameters."""
+        if self.stop.is_set():
+            raise Stopped
+        layout = self.layout
+        out = self.record.differentiate(layout.numbers(internal).tolist(), list(layout.variable))
+        value, slopes = (np.frombuffer(out[self._place + at]) for at in (0, 2))
+        with np.errstate(over="ignore", invalid="ignore"):
+            by_row = slopes.reshape(len(value), len(layout.free)) * layout.slope(internal)
+            residual = (value - self.measured) / self.scale
+            return _finite(residual), np.nan_to_num(by_row / self.scale, posinf=0.0, neginf=0.0)
+
+    def sums_of_squares(self, internal: Array, threads: int = 0) -> Array:
+        """Return the sum of squared residuals of many sets of parameters (k, n), in lanes."""
+        numbers = np.ascontiguousarray(self.layout.numbers(internal).reshape(-1))
+        pairs = np.frombuffer(self.record.misfits(numbers, threads or usable_cpus()))
+        sums = pairs.reshape(-1, 2)[:, self._place] / self.scale**2
+        worst = len(self.measured) * HOPELESS**2
+        return np.minimum(np.nan_to_num(sums, nan=worst, posinf=worst), worst)
+
+
+@dataclass(frozen=True, eq=False)
+class Minimum:
+    """What one start came to: the internal parameters, their cost, and whether it was done."""
+
+    internal: Array
+    cost: float
+    evaluations: int
+    converged: bool
+
+
+def usable_cpus() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def minimize(
+    problem: Problem, start: Array, bounds: tuple[Array, Array], loss: str, most: int
+) -> Minimum:
+    """Follow one start down, by a trust-region method with exact derivatives.
+
+    A stop gives the best point so far, not converged.
+    """
+    low, high = bounds
+    inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
+    best = [Minimum(inside, np.inf, 0, converged=False)]
+
+    def value(internal: Array) -> Array:
+        residual = problem.residual(internal)
+        cost = 0.5 * float(residual @ residual)
+        if cost < best[0].cost:
+            best[0] = Minimum(internal.copy(), cost, 0, converged=False)
+        return residual
+
+    def slope(internal: Array) -> Array:
+        return problem.residual_and_slopes(internal)[1]
+
+    try:
+        found = least_squares(
+            value, inside, jac=slope, bounds=bounds, x_scale="jac", loss=loss, max_nfev=most,
+            ftol=1e-9, xtol=1e-9,
+        )  # fmt: skip
+    except Stopped:
+        return best[0]
+    return Minimum(found.x, float(found.cost), int(found.nfev), converged=found.status > 0)
+
+
+def screened_starts(
+    problem: Problem,
+    guess: Array,
+    spread: Array,
+    bounds: tuple[Array, Array],
+    starts: int,
+    seed: int,
+) -> Array:
+    """Return starts (k, n): the guess, then the best of many drawn around it.
+
+    ``spread`` is the half width of the draws in the internal parameters. Draws are keyed by the
+    seed alone, so the same call gives the same starts.
+    """
+    if starts == 1:
+        return guess[None, :]
+    rng = np.random.default_rng(seed)
+    drawn = guess + spread * rng.uniform(-1.0, 1.0, (SCREENED_PER_START * starts, len(guess)))
+    drawn = np.clip(drawn, *bounds)
+    order = np.argsort(problem.sums_of_squares(drawn), kind="stable")
+    return np.vstack([guess, drawn[order[: starts - 1]]])
+
+
+def minimize_all(
+    problem: Problem,
+    starts: Array,
+    bounds: tuple[Array, Array],
+    loss: str,
+    most: int,
+    progress: Progress | None,
+) -> tuple[list[Minimum], bool]:
+    """Follow all starts, on threads; return what they came to and whether all were done.
+
+    Ctrl-C stops them; what they had come to is kept.
+    """
+    complete = True
+    with ThreadPoolExecutor(min(usable_cpus(), len(starts))) as pool:
+        runs = [pool.submit(minimize, problem, start, bounds, loss, most) for start in starts]
+        try:
+            for finished, _ in enumerate(as_completed(runs), start=1):
+                if progress is not None:
+                    progress(finished, len(starts))
+        except KeyboardInterrupt:
+            problem.stop.set()
+            complete = False
+        done = [run.result() for run in runs]
+    problem.stop.clear()
+    return done, complete
+
+
+def _finite(residual: Array) -> Array:
+    bounded: Array = np.clip(
+        np.nan_to_num(residual, nan=HOPELESS, posinf=HOPELESS, neginf=-HOPELESS),
+        -HOPELESS,
+        HOPELESS,
+    )
+    return bounded
