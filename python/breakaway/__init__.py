@@ -17,9 +17,25 @@ from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioErro
 if TYPE_CHECKING:
     from breakaway import design
     from breakaway.batch import Batch, draw_columns, grid_columns, simulate_many
-    from breakaway.identification import JointFile, identify_inertia_friction
+    from breakaway.identification import (
+        BreakawayEvent,
+        BreakawayReport,
+        Cascade,
+        ComparedLaw,
+        Estimate,
+        Identification,
+        JointFile,
+        Population,
+        Posterior,
+        Prediction,
+        compare_laws,
+        find_breakaway_events,
+        fit_population,
+        identify,
+        identify_inertia_friction,
+    )
     from breakaway.imposed import ImposedMotion, impose_motion
-    from breakaway.logs import Log, read_log
+    from breakaway.logs import Channel, Finding, Log, derive_motion, noise_floor, read_log
     from breakaway.resolution import resolve
     from breakaway.run import Outcome, Run, RunMetrics
     from breakaway.scenario import (
@@ -77,9 +93,25 @@ if TYPE_CHECKING:
 # Where each public name lives; loaded on first use, so that `import breakaway` stays quick.
 _HOMES = {
     "breakaway.batch": ("Batch", "draw_columns", "grid_columns", "simulate_many"),
-    "breakaway.identification": ("JointFile", "identify_inertia_friction"),
+    "breakaway.identification": (
+        "BreakawayEvent",
+        "BreakawayReport",
+        "Cascade",
+        "ComparedLaw",
+        "Estimate",
+        "Identification",
+        "JointFile",
+        "Population",
+        "Posterior",
+        "Prediction",
+        "compare_laws",
+        "find_breakaway_events",
+        "fit_population",
+        "identify",
+        "identify_inertia_friction",
+    ),
     "breakaway.imposed": ("ImposedMotion", "impose_motion"),
-    "breakaway.logs": ("Log", "read_log"),
+    "breakaway.logs": ("Channel", "Finding", "Log", "derive_motion", "noise_floor", "read_log"),
     "breakaway.resolution": ("resolve",),
     "breakaway.run": ("Outcome", "Run", "RunMetrics"),
     "breakaway.scenario": (
@@ -140,14 +172,22 @@ __all__ = [
     "BandLimitedDisturbance",
     "Batch",
     "BreakawayError",
+    "BreakawayEvent",
+    "BreakawayReport",
+    "Cascade",
+    "Channel",
     "CompareStudy",
     "CompareTable",
     "ComparedController",
+    "ComparedLaw",
+    "Estimate",
+    "Finding",
     "FmPulses",
     "FmVibration",
     "Gains",
     "GaussianDisturbance",
     "IdealActuator",
+    "Identification",
     "ImposedMotion",
     "JointFile",
     "Limits",
@@ -164,6 +204,9 @@ __all__ = [
     "Pid",
     "PidSettings",
     "PolePlacement",
+    "Population",
+    "Posterior",
+    "Prediction",
     "PushOnlyActuator",
     "RampReference",
     "RobustnessStudy",
@@ -189,13 +232,19 @@ __all__ = [
     "Uniform",
     "UniformDisturbance",
     "__version__",
+    "compare_laws",
+    "derive_motion",
     "design",
     "draw_columns",
+    "find_breakaway_events",
+    "fit_population",
     "grid_columns",
+    "identify",
     "identify_inertia_friction",
     "impose_motion",
     "load_scenario",
     "load_study",
+    "noise_floor",
     "open_study",
     "preset_names",
     "read_log",

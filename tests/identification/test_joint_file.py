@@ -41,7 +41,9 @@ def joint(fit: InertiaFrictionFit, log: Log) -> JointFile:
 def test_gathers_the_fit(joint: JointFile, fit: InertiaFrictionFit) -> None:
     assert joint.part.mass_kg == fit.symmetric.mass_kg
     assert joint.rig.offset_n == fit.symmetric.offset_n
-    assert joint.standard_error.coulomb_n == fit.symmetric.standard_error["coulomb_n"]
+    assert joint.standard_error["coulomb_n"] == fit.symmetric.standard_error["coulomb_n"]
+    assert joint.asymmetric is not None and joint.relative_force_error_percent is not None
+    assert joint.provenance.settings is not None
     assert joint.asymmetric.coulomb_negative_n == fit.asymmetric.coulomb_negative_n
     assert joint.asymmetric.standard_error.mass_kg == fit.asymmetric.standard_error["mass_kg"]
     assert joint.relative_force_error_percent.asymmetric == (

@@ -1,73 +1,335 @@
-"""``breakaway identify``: mass and friction from a measured log."""
+"""``breakaway identify``: a joint from a measured log."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from breakaway.cli.quantity import show_uncertain, split_unit
-from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.cli.identified import law_tables, regression_tables
+from breakaway.cli.progress import counted
+from breakaway.cli.show import busy, say, say_json
 
 if TYPE_CHECKING:
-    from breakaway.identification import AsymmetricFit, InertiaFrictionFit, SymmetricFit
+    from breakaway.identification import Identification, JointFile
+    from breakaway.identification.comparison import ComparedLaw
+    from breakaway.logs import Log
 
 
 class LogFormat(StrEnum):
     """Formats of `breakaway.logs.FORMATS`, named here so that the command starts without them."""
 
     CSV = "csv"
+    PARQUET = "parquet"
+    MAT = "mat"
+    HDF5 = "hdf5"
+    TDMS = "tdms"
+    MDF = "mdf"
+    MCAP = "mcap"
     EMPS = "emps"
+
+
+class LawChoice(StrEnum):
+    """Laws of `breakaway.identification.LAWS`, and all of them, compared."""
+
+    COULOMB = "coulomb"
+    STRIBECK = "stribeck"
+    LUGRE = "lugre"
+    ELASTO_PLASTIC = "elasto_plastic"
+    COMPARE = "compare"
+
+
+class MotionChoice(StrEnum):
+    """Motions of `breakaway.identify`."""
+
+    IMPOSED = "imposed"
+    FREE = "free"
+    CLOSED_LOOP = "closed_loop"
+
+
+class LossChoice(StrEnum):
+    """Losses of `breakaway.identify`."""
+
+    LINEAR = "linear"
+    SOFT_L1 = "soft_l1"
+    HUBER = "huber"
+    CAUCHY = "cauchy"
 
 
 def identify(
     log: Annotated[Path, typer.Argument(help="The measured log.")],
-    format: Annotated[
-        LogFormat,
+    law: Annotated[
+        LawChoice | None,
         typer.Option(
-            help="csv: columns t_s, position_m, force_n, with units as named. "
-            "emps: the EMPS benchmark's MATLAB file."
+            help="Friction law that is fitted by simulation; compare fits all and says which pay. "
+            "Left out: mass, Coulomb and viscous friction by regression."
         ),
-    ] = LogFormat.CSV,
+    ] = None,
+    motion: Annotated[
+        MotionChoice,
+        typer.Option(help="imposed: force is predicted; free: position is; closed_loop: force is."),
+    ] = MotionChoice.IMPOSED,
+    asymmetric: Annotated[
+        bool, typer.Option("--asymmetric", help="Levels of their own in each direction.")
+    ] = False,
+    position_dependent: Annotated[
+        bool, typer.Option("--position-dependent", help="Friction that changes with position.")
+    ] = False,
+    controller: Annotated[
+        Path | None,
+        typer.Option(help="TOML file of the rig's controller, for closed_loop.", metavar="FILE"),
+    ] = None,
+    repeat: Annotated[
+        list[str] | None,
+        typer.Option(help="Span in s that is fitted, once per repeat.", metavar="START:END"),
+    ] = None,
+    held_out: Annotated[
+        str | None,
+        typer.Option(help="Span in s that is predicted and not fitted.", metavar="START:END"),
+    ] = None,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(help="Parameter that is held.", metavar="NAME=VALUE"),
+    ] = None,
+    free: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Parameter that is fitted although the log hardly excites it.", metavar="NAME"
+        ),
+    ] = None,
+    loss: Annotated[
+        LossChoice, typer.Option(help="All but linear are robust to outliers.")
+    ] = LossChoice.LINEAR,
+    starts: Annotated[int, typer.Option(min=1, help="Starts that are followed.")] = 8,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the starts and of draws.")] = 0,
+    posterior: Annotated[
+        int, typer.Option(min=0, help="Draws from the posterior (extra: posterior).", metavar="N")
+    ] = 0,
+    format: Annotated[
+        LogFormat | None, typer.Option(help="Format of the log.", show_default="guessed")
+    ] = None,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            help="TOML file that names channels, units and signs.",
+            metavar="FILE",
+            show_default="LOG with .toml, if it is there",
+        ),
+    ] = None,
+    use: Annotated[
+        list[str] | None,
+        typer.Option(help="Another channel of the log as a channel.", metavar="CHANNEL=OTHER"),
+    ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Joint file to write, for `breakaway run --joint`.", metavar="FILE"),
+        typer.Option(help="Joint file to write, for run --joint and for studies.", metavar="FILE"),
     ] = None,
+    report: Annotated[
+        bool,
+        typer.Option(
+            "--report", help="Write an HTML report too, beside --out or beside the log's name here."
+        ),
+    ] = False,
     lowpass_hz: Annotated[
-        float | None, typer.Option(help="Cutoff of the low-pass on position.", show_default="100")
+        float | None, typer.Option(help="Cutoff of the low-pass on position.")
     ] = None,
     decimation: Annotated[
-        int | None, typer.Option(help="Samples per sample that is fitted.", show_default="10")
+        int | None,
+        typer.Option(help="Samples per sample of the regression.", show_default="10"),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
 ) -> None:
-    """Identify mass, Coulomb and viscous friction from a log of position and force.
+    """Identify a joint from a log of position and force.
 
-    Shows the fit with equal friction in both directions and the fit with
-    friction of its own in each, with standard errors, and what the log can
-    not tell.
+    Without --law: mass, Coulomb and viscous friction by regression, with
+    equal friction in both directions and with friction of its own in each.
+    With --law: by simulation of that law, with intervals, and with what the
+    log can not tell. Ctrl-C ends a fit and shows the best so far.
     """
-    from breakaway.identification import JointFile, identify_inertia_friction
     from breakaway.logs import read_log
+
+    if out is not None:
+        _check_target(log, out)
+    page = _page(log, out) if report else None
+    measured = read_log(log, mapping, format.value if format else None)
+    for pair in use or []:
+        channel, other = _pair(pair, "--use", "CHANNEL=OTHER")
+        measured = measured.using(**{channel: other})
+    if law is None:
+        _regress(measured, log, lowpass_hz, decimation, out, page, json)
+        return
+    settings: dict[str, Any] = {
+        "motion": motion.value,
+        "asymmetric": asymmetric,
+        "position_dependent": position_dependent,
+        "controller": _controller(controller),
+        "repeats": [_span(text, "--repeat") for text in repeat or []],
+        "fixed": _fixed(fix or []),
+        "free": tuple(free or ()),
+        "lowpass_hz": lowpass_hz,
+        "loss": loss.value,
+        "starts": starts,
+        "seed": seed,
+    }
+    span = None if held_out is None else _span(held_out, "--held-out")
+    _fit(measured, law, settings, span, posterior, out, page, json)
+
+
+def _regress(
+    measured: Log,
+    path: Path,
+    lowpass_hz: float | None,
+    decimation: int | None,
+    out: Path | None,
+    page: Path | None,
+    json: bool,
+) -> None:
+    from breakaway.identification import JointFile, identify_inertia_friction
+    from breakaway.identification import identify as fit_law
 
     settings: dict[str, Any] = {"lowpass_hz": lowpass_hz, "decimation": decimation}
     given = {name: value for name, value in settings.items() if value is not None}
-    if out is not None:
-        _check_target(log, out)
     with busy("identifying ..."):
-        measured = read_log(log, format=format.value)
         fit = identify_inertia_friction(measured, **given)
     if not json:
-        _show(fit, log)
+        say(*regression_tables(fit, measured, path))
     if out is not None:
         JointFile.from_fit(fit, measured).save(out)
+    if page is not None:
+        found = fit_law(measured, law="coulomb", method="least_squares", lowpass_hz=lowpass_hz)
+        _write_report(page, found)
     if json:
-        say_json({"log": str(log), **asdict(fit), "file": str(out) if out else None})
-    elif out is not None:
-        say(f"wrote {out}")
+        say_json({"log": str(path), **asdict(fit), "file": str(out) if out else None})
+    _say_written(json, out, page)
+
+
+def _fit(
+    measured: Log,
+    law: LawChoice,
+    settings: dict[str, Any],
+    held_out: tuple[float, float] | None,
+    samples: int,
+    out: Path | None,
+    page: Path | None,
+    json: bool,
+) -> None:
+    from breakaway.errors import LogError
+    from breakaway.identification import JointFile, compare_laws
+    from breakaway.identification import identify as fit_law
+    from breakaway.identification.identify import as_dict
+
+    compared: tuple[ComparedLaw, ...] = ()
+    if law is LawChoice.COMPARE:
+        if held_out is None:
+            raise LogError("--law compare: needs --held-out START:END, to judge the laws by")
+        if not settings["repeats"]:
+            del settings["repeats"]
+        with busy("comparing laws ..."):
+            compared = compare_laws(measured, held_out=held_out, **settings)
+        found = [one.fit for one in compared if one.pays][-1]
+    else:
+        with counted("fitting", "starts") as progress:
+            settings["law"] = law.value
+            found = fit_law(measured, progress=progress, **settings)
+    predicted = None if held_out is None else found.predict(spans=[held_out])
+    draws = None
+    if samples:
+        with counted("sampling the posterior", "steps") as progress:
+            draws = found.posterior(samples, seed=settings["seed"], progress=progress)
+    if not json:
+        say(*law_tables(found, compared, predicted))
+    joint: JointFile | None = None
+    if out is not None:
+        joint = JointFile.from_identification(found, draws, seed=settings["seed"])
+        joint.save(out)
+    if page is not None:
+        _write_report(page, found, posterior=draws, compared=compared, held_out=predicted)
+    if json:
+        shown = as_dict(found) | {
+            "held_out_rms_error": None if predicted is None else predicted.rms_error,
+            "compared": [
+                {"law": one.fit.law.name, "held_out_error": one.held_out_error, "pays": one.pays}
+                for one in compared
+            ],
+            "file": None if out is None else str(out),
+        }
+        say_json(shown)
+    _say_written(json, out, page)
+
+
+def _write_report(path: Path, found: Identification, **parts: Any) -> None:  # noqa: ANN401
+    from breakaway.report.identification import save_identification_report
+
+    with busy("writing the report ..."):
+        save_identification_report(path, found, **parts)
+
+
+def _say_written(json: bool, *paths: Path | None) -> None:
+    if not json:
+        for path in paths:
+            if path is not None:
+                say(f"wrote {path}")
+
+
+def _page(log: Path, out: Path | None) -> Path:
+    return Path(f"{log.stem}.html") if out is None else out.with_suffix(".html")
+
+
+def _controller(path: Path | None) -> Any:  # noqa: ANN401 - a Cascade or a Pid
+    """Read the controller of a rig: a cascade, or a PID whose gains are given."""
+    if path is None:
+        return None
+    import tomllib
+
+    from breakaway.errors import ScenarioError
+    from breakaway.identification import Cascade
+    from breakaway.scenario import Pid
+    from breakaway.scenario.files import parse_toml
+
+    try:
+        text = path.read_text(encoding="utf-8")
+        kind = tomllib.loads(text).get("kind")
+    except (OSError, ValueError) as error:
+        raise ScenarioError(f"{path}: can not be read as TOML: {error}") from None
+    if kind not in ("cascade", "pid"):
+        raise ScenarioError(f"{path}: kind: {kind!r} is not one of 'cascade', 'pid'")
+    return parse_toml(Cascade if kind == "cascade" else Pid, text, path.name)
+
+
+def _span(text: str, option: str) -> tuple[float, float]:
+    start, end = _pair(text.replace(":", "=", 1), option, "START:END")
+    return _number(start, option), _number(end, option)
+
+
+def _fixed(pairs: list[str]) -> dict[str, float]:
+    named = (_pair(text, "--fix", "NAME=VALUE") for text in pairs)
+    return {name: _number(value, "--fix") for name, value in named}
+
+
+def _pair(text: str, option: str, form: str) -> tuple[str, str]:
+    from breakaway.errors import LogError
+
+    left, sign, right = text.partition("=")
+    if not (left and sign and right):
+        raise LogError(f"{option}: {text!r} is not of the form {form}")
+    return left, right
+
+
+def _number(text: str, option: str) -> float:
+    import math
+
+    from breakaway.errors import LogError
+
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise LogError(f"{option}: {text!r} is not a finite number")
+    return value
 
 
 def _check_target(log: Path, out: Path) -> None:
@@ -82,38 +344,3 @@ def _check_target(log: Path, out: Path) -> None:
             JointFile.load(out)
         except ScenarioError:
             raise OutputError(f"{out}: is there and is no joint file; give another name") from None
-
-
-def _show(fit: InertiaFrictionFit, log: Path) -> None:
-    say(
-        f"{log}: sampled at {fit.sample_rate_hz:.6g} Hz, low-pass {fit.lowpass_hz:g} Hz, "
-        f"decimation {fit.decimation}, {fit.symmetric.samples} samples fitted"
-    )
-    _show_fit("Symmetric: F = mass a + viscous v + coulomb sign(v) + offset", fit.symmetric)
-    _show_fit("Asymmetric: friction of its own in each direction, no offset", fit.asymmetric)
-    if fit.not_identified:
-        left_open = Sheet(
-            "Not identified: a scenario's own values stay", ["field", "because"], prose=["because"]
-        )
-        for field, reason in fit.not_identified.items():
-            left_open.add(field, reason)
-        say(left_open)
-    for note in fit.notes:
-        if not note.startswith("not identified:"):  # the table says it
-            say(f"- {note}")
-
-
-def _show_fit(title: str, fit: SymmetricFit | AsymmetricFit) -> None:
-    shown = Sheet(
-        title,
-        ["parameter", "value", "std. error", "unit", "relative"],
-        numbers=["value", "std. error", "relative"],
-    )
-    names = [field.name for field in fields(fit) if field.name in fit.standard_error]
-    for name in names:
-        value, error = getattr(fit, name), fit.standard_error[name]
-        words, unit = split_unit(name)
-        relative = f"{100.0 * abs(error / value):.2g} %" if value else ""
-        shown.add(words, *show_uncertain(value, error), unit, relative)
-    shown.add("relative force error", f"{fit.relative_force_error_percent:.2f}", "", "%", "")
-    say(shown)

@@ -50,14 +50,20 @@ class Overlay:
         """Figures of the log that no scenario has a place for; with the reason."""
         each = self.joint_file.asymmetric
         same = "the friction laws are the same in both directions"
-        return {
-            "rig.offset_n": (self.joint_file.rig.offset_n, "belongs to the rig, not to the joint"),
-            "asymmetric.mass_kg": (each.mass_kg, "the symmetric fit's mass is used"),
-        } | {
-            f"asymmetric.{name}": (getattr(each, name), same)
-            for name in type(each).model_fields
-            if name not in ("mass_kg", "standard_error")
+        rig = {
+            "rig.offset_n": (self.joint_file.rig.offset_n, "belongs to the rig, not to the joint")
         }
+        if each is None:
+            return rig
+        return (
+            rig
+            | {"asymmetric.mass_kg": (each.mass_kg, "the symmetric fit's mass is used")}
+            | {
+                f"asymmetric.{name}": (getattr(each, name), same)
+                for name in type(each).model_fields
+                if name not in ("mass_kg", "standard_error")
+            }
+        )
 
     def gains(self) -> str:
         """Say what becomes of the controller's gains."""

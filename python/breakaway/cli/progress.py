@@ -45,6 +45,26 @@ def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None] |
         bar.stop()
 
 
+@contextmanager
+def counted(doing: str, units: str) -> Iterator[Callable[[int, int], None] | None]:
+    """Show on a terminal how many of how many are done; in pipes nothing."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=None),
+        MofNCompleteColumn(),
+        TextColumn(units, markup=False),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(doing, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
 def progress_in_words(at: StudyProgress, elapsed_s: float) -> str:
     """Say how many runs are done, how fast, and how long the rest takes at most.
 

@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from breakaway.identification.cascade import Cascade
+from breakaway.identification.censored import FittedDistribution, fit_distribution
 from breakaway.identification.comparison import ComparedLaw, compare_laws
+from breakaway.identification.events import (
+    BreakawayEvent,
+    BreakawayReport,
+    find_breakaway_events,
+)
 from breakaway.identification.identify import Estimate, Identification, identify
 from breakaway.identification.inertia_friction import (
     NOT_IDENTIFIED,
@@ -14,7 +20,9 @@ from breakaway.identification.inertia_friction import (
 )
 from breakaway.identification.joint_file import JointFile
 from breakaway.identification.laws import LAWS
+from breakaway.identification.population import Population, fit_population
 from breakaway.identification.prediction import Prediction
+from breakaway.identification.sliding import Reversal, SlidingLevel
 from breakaway.identification.uncertainty import Posterior, Profile
 from breakaway.identification.verdicts import Excitation, Verdict
 
@@ -22,19 +30,28 @@ __all__ = [
     "LAWS",
     "NOT_IDENTIFIED",
     "AsymmetricFit",
+    "BreakawayEvent",
+    "BreakawayReport",
     "Cascade",
     "ComparedLaw",
     "Estimate",
     "Excitation",
+    "FittedDistribution",
     "Identification",
     "InertiaFrictionFit",
     "JointFile",
+    "Population",
     "Posterior",
     "Prediction",
     "Profile",
+    "Reversal",
+    "SlidingLevel",
     "SymmetricFit",
     "Verdict",
     "compare_laws",
+    "find_breakaway_events",
+    "fit_distribution",
+    "fit_population",
     "identify",
     "identify_inertia_friction",
 ]

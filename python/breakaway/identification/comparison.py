@@ -8,7 +8,7 @@ from typing import Any
 
 from breakaway.errors import LogError
 from breakaway.identification.identify import Identification, identify
-from breakaway.identification.laws import LAWS, check_law
+from breakaway.identification.laws import LAWS, LawName, check_law
 from breakaway.identification.record import Span
 from breakaway.logs.log import Log
 
@@ -38,7 +38,7 @@ def compare_laws(
     log: Log,
     *,
     held_out: Span,
-    laws: Sequence[str] = LAWS,
+    laws: Sequence[LawName] = LAWS,
     **settings: Any,  # noqa: ANN401 - handed on to `identify`, which checks them
 ) -> tuple[ComparedLaw, ...]:
     """Fit several laws and say which pay for their parameters.
@@ -76,7 +76,8 @@ def compare_laws(
     >>> v = 0.3 * np.cos(3 * t_s) + 0.22 * np.cos(11 * t_s)
     >>> noise = 0.1 * np.random.default_rng(0).standard_normal(4000)
     >>> log = Log(t_s=t_s, position_m=x, force_n=5.0 * np.sign(v) + 20.0 * v + noise)
-    >>> simple, rich = compare_laws(log, held_out=(3.0, 4.0), laws=["coulomb", "stribeck"], starts=2)
+    >>> laws = ("coulomb", "stribeck")
+    >>> simple, rich = compare_laws(log, held_out=(3.0, 4.0), laws=laws, starts=2)
     >>> simple.pays, rich.pays
     (True, False)
 

@@ -13,9 +13,10 @@ from breakaway.errors import LogError
 from breakaway.identification.cascade import Cascade
 from breakaway.identification.guess import internal_guess, scales, stand_in
 from breakaway.identification.inertia_friction import identify_inertia_friction
-from breakaway.identification.laws import Law, Layout, check_law
+from breakaway.identification.laws import Law, LawName, Layout, check_law
 from breakaway.identification.output_error import (
     LOSSES,
+    Loss,
     Minimum,
     Problem,
     Progress,
@@ -256,7 +257,7 @@ class Identification:
     def _place(self, name: str) -> int:
         names = [one.name for one in self.estimates]
         if name not in names:
-            raise LogError(f"parameter {name!r} was not fitted; it must be one of {', '.join(names)}")
+            raise LogError(f"parameter {name!r} was not fitted; those are {', '.join(names)}")
         return names.index(name)
 
 
@@ -273,8 +274,8 @@ class Internals:
 def identify(
     log: Log,
     *,
-    law: str = "lugre",
-    motion: str = "imposed",
+    law: LawName = "lugre",
+    motion: MotionKind = "imposed",
     asymmetric: bool = False,
     position_dependent: bool = False,
     controller: Cascade | Pid | None = None,
@@ -286,10 +287,10 @@ def identify(
     force_held: bool = True,
     lowpass_hz: float | None = None,
     steps_per_row: int = 1,
-    loss: str = "linear",
+    loss: Loss = "linear",
     starts: int = 8,
     seed: int = 0,
-    method: str = "output_error",
+    method: Method = "output_error",
     progress: Progress | None = None,
 ) -> Identification:
     """Identify a joint by output error: the parameters whose simulation is nearest to the log.
@@ -386,7 +387,7 @@ def identify(
     _at_least_one("starts", starts)
     _at_least_one("steps_per_row", steps_per_row)
     settings = RunSettings(
-        motion=motion,  # type: ignore[arg-type]
+        motion=motion,
         controller=controller,
         force_limit_n=force_limit_n,
         force_held=force_held,
@@ -471,7 +472,7 @@ def _at_least_one(name: str, value: int) -> None:
 def _check_fixed(fixed: Mapping[str, float], names: Sequence[str]) -> None:
     for name, value in fixed.items():
         if name not in names:
-            raise LogError(f"fixed: {name!r} is not a parameter of this law; they are {', '.join(names)}")
+            raise LogError(f"{name!r} is not a parameter of this law; those are {', '.join(names)}")
         if not math.isfinite(value):
             raise LogError(f"fixed.{name}: {value!r} is not a finite number")
 
@@ -524,7 +525,7 @@ class _Found:
             effective_rows=known.weight * len(residual),
             condition_number=known.condition_number,
             verdicts=judged,
-            notes=tuple(self._notes(best, known, complete, converged, starts, agreeing)),
+            notes=tuple(self._notes(known, complete, converged, starts, agreeing)),
             converged=converged,
             complete=complete,
             starts=starts,
@@ -532,10 +533,19 @@ class _Found:
             seed=self.seed,
             loss=self.loss,
             fit=predict_rows(
-                self.rows, self.spans, self.law, self.settings, problem.layout.numbers(best), same=True
+                self.rows,
+                self.spans,
+                self.law,
+                self.settings,
+                problem.layout.numbers(best),
+                same=True,
             ),
             internals=Internals(problem, best, self.bounds, known),
         )
+
+    def _fitted_rows(self, best: Array) -> Prediction:
+        numbers = self.problem.layout.numbers(best)
+        return predict_rows(self.rows, self.spans, self.law, self.settings, numbers, same=True)
 
     def _estimates(self, best: Array, known: Covariance) -> list[Estimate]:
         layout = self.problem.layout
@@ -558,7 +568,6 @@ class _Found:
 
     def _notes(
         self,
-        best: Array,
         known: Covariance,
         complete: bool,
         converged: bool,

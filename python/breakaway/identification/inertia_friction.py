@@ -58,10 +58,12 @@ class FitQuality:
     """How well a set of parameters is known; ``standard_error`` has the parameters' names.
 
     The standard errors hold for independent residuals; ``residual_autocorrelation`` (of
-    successive samples, 0 if independent) tells how far that is true.
+    successive samples, 0 if independent) tells how far that is true, and ``covariance``, in the
+    order of the names, allows for it.
     """
 
     standard_error: Mapping[str, float]
+    covariance: tuple[tuple[float, ...], ...]
     relative_force_error_percent: float
     samples: int
     condition_number: float
@@ -108,6 +110,16 @@ class InertiaFrictionFit:
     trimmed_samples: int
     notes: tuple[str, ...]
     not_identified: Mapping[str, str]
+
+    def intervals(self) -> dict[str, list[float]]:
+        """Return 95 % intervals of the symmetric parameters, which allow for correlation."""
+        both = self.symmetric
+        half = 1.959964 * np.sqrt(np.diag(np.array(both.covariance)))
+        values = [(name, getattr(both, name)) for name in both.standard_error]
+        return {
+            name: [value - float(reach), value + float(reach)]
+            for (name, value), reach in zip(values, half, strict=True)
+        }
 
 
 def identify_inertia_friction(
@@ -204,6 +216,7 @@ def _result(kind: type[Fit], names: tuple[str, ...], solution: Solution) -> Fit:
     return kind(
         **content,
         standard_error=dict(zip(names, solution.errors.tolist(), strict=True)),
+        covariance=tuple(map(tuple, (_inflation(solution) ** 2 * solution.covariance).tolist())),
         relative_force_error_percent=solution.relative_force_error_percent,
         samples=solution.samples,
         condition_number=solution.condition_number,

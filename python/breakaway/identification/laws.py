@@ -137,7 +137,7 @@ class Layout:
         fixed: Mapping[str, float],
         offset_of_segment: tuple[int, ...],
     ) -> Layout:
-        """Lay out ``parameters``; those in ``fixed`` (by name of parameter or number) keep still."""
+        """Lay out ``parameters``; those in ``fixed``, by name, keep still."""
         names = [*SHARED, *(f"offset {offset}" for offset in offset_of_segment)]
         base = np.zeros(len(names))
         variable: list[int | None] = [None] * len(names)

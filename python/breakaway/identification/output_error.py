@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -15,7 +16,8 @@ from breakaway._core import RigRecord
 from breakaway.identification.laws import Layout
 from breakaway.logs.log import Array
 
-LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+Loss = Literal["linear", "soft_l1", "huber", "cauchy"]
+LOSSES: tuple[Loss, ...] = ("linear", "soft_l1", "huber", "cauchy")
 """Losses of `scipy.optimize.least_squares` that can be chosen; all but the first are robust."""
 
 HOPELESS = 1e6
@@ -100,7 +102,7 @@ def usable_cpus() -> int:
 
 
 def minimize(
-    problem: Problem, start: Array, bounds: tuple[Array, Array], loss: str, most: int
+    problem: Problem, start: Array, bounds: tuple[Array, Array], loss: Loss, most: int
 ) -> Minimum:
     """Follow one start down, by a trust-region method with exact derivatives.
 
@@ -156,7 +158,7 @@ def minimize_all(
     problem: Problem,
     starts: Array,
     bounds: tuple[Array, Array],
-    loss: str,
+    loss: Loss,
     most: int,
     progress: Progress | None,
 ) -> tuple[list[Minimum], bool]:

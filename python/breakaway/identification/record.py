@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -115,7 +116,7 @@ def segments_of(
                 f"without overlap, within {t_s[0]:g} s to {t_s[-1]:g} s"
             )
         cuts = [first, *(int(gap) for gap in gaps if first < gap < end), end]
-        for cut, next_cut in zip(cuts[:-1], cuts[1:], strict=True):
+        for cut, next_cut in pairwise(cuts):
             if next_cut - cut >= MINIMUM_SEGMENT:
                 segments.append((cut, next_cut))
                 owners.append(number)

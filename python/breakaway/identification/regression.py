@@ -23,6 +23,7 @@ class Solution:
 
     values: Array
     errors: Array
+    covariance: Array
     relative_force_error_percent: float
     samples: int
     condition_number: float
@@ -75,10 +76,12 @@ def least_squares(log: Log, names: tuple[str, ...], columns: Array, force: Array
     residual = force - columns @ values
     n, p = columns.shape
     power = float(residual @ residual)
-    spread = np.linalg.norm(right.T / singular, axis=1) / scale
+    root = right.T / singular / scale[:, None]
+    covariance = power / (n - p) * (root @ root.T)
     return Solution(
         values=values,
-        errors=np.sqrt(power / (n - p)) * spread,
+        errors=np.sqrt(np.diag(covariance)),
+        covariance=covariance,
         relative_force_error_percent=100.0 * float(np.sqrt(power) / np.linalg.norm(force)),
         samples=n,
         condition_number=condition,

@@ -68,7 +68,8 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
 
     ::
 
-        C = H⁻¹ S H⁻¹,   H = Jᵀ J,   S = Σ_{|l| ≤ L} (1 - |l| / (L + 1)) Σ_t J_t r_t r_{t+l} J_{t+l}ᵀ
+        C = H⁻¹ S H⁻¹,    H = Jᵀ J
+        S = Σ_{|l| ≤ L} (1 - |l| / (L + 1)) Σ_t J_t r_t r_{t+l} J_{t+l}ᵀ
 
     with J the slopes (n, p) and r the residual: the estimate of Newey and West (Econometrica
     55(3), 1987), which holds for unequal and correlated residuals. The Bartlett weights are
@@ -105,7 +106,7 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
 
 
 def interval(problem: Problem, internal: Array, place: int, error: float) -> tuple[float, float]:
-    """Return the confidence interval of a parameter, from the standard error of the internal one."""
+    """Return the interval of a parameter, from the standard error of the internal one."""
     half = float(norm.ppf(0.5 + 0.5 * LEVEL)) * error
     parameter = problem.layout.free[place]
     with np.errstate(over="ignore"):
@@ -183,10 +184,17 @@ def _refit(problem: Problem, at: Array, others: Array, bounds: tuple[Array, Arra
         return full
 
     low, high = bounds[0][others], bounds[1][others]
+
+    def value(part: Array) -> Array:
+        return problem.residual(whole(part))
+
+    def slope(part: Array) -> Array:
+        return problem.residual_and_slopes(whole(part))[1][:, others]
+
     found = least_squares(
-        lambda part: problem.residual(whole(part)),
+        value,
         np.clip(at[others], low + 1e-9 * (high - low), high - 1e-9 * (high - low)),
-        jac=lambda part: problem.residual_and_slopes(whole(part))[1][:, others],
+        jac=slope,
         bounds=(low, high),
         x_scale="jac",
         max_nfev=20,

@@ -182,7 +182,8 @@ def unexcited(
 
     def hold(name: str, value: float, because: str) -> None:
         if name in names:
-            verdict = Verdict(name, False, f"held at {value:g}: {because}", _REMEDIES.get(name, _MORE))
+            remedy = _REMEDIES.get(name, _MORE)
+            verdict = Verdict(name, False, f"held at {value:g}: {because}", remedy)
             out[name] = (value, verdict)
 
     if shown.speed_ratio < SPEED_RATIO:
@@ -200,7 +201,7 @@ def unexcited(
     if not shown.both_directions:
         hold("offset_n", 0.0, "the part slides one way only, so an offset looks like friction")
     if shown.presliding_m < PRESLIDING_QUANTA * shown.noise_m and settings.motion == "imposed":
-        depth = f"presliding is {shown.presliding_m:.2g} m, the position's noise {shown.noise_m:.2g} m"
+        depth = f"presliding is {shown.presliding_m:.2g} m, the noise {shown.noise_m:.2g} m"
         hold("elastic_share", 0.5, depth)
         hold("damping_n_s_per_m", 0.0, depth)
     return out

@@ -96,7 +96,9 @@ def parse_study(values: Mapping[str, Any]) -> Study:
 
 
 def _from_folder(values: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Let paths of scenarios start at the folder of the study."""
+    """Let paths of scenarios and joints start at the folder of the study."""
+    if isinstance(values.get("joint"), str):
+        values["joint"] = str(folder / values["joint"])
     compare = values.get("compare")
     controllers = compare.get("controllers") if isinstance(compare, dict) else None
     for table in [values, *(controllers if isinstance(controllers, list) else [])]:

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from breakaway.batch.columns import check_paths, with_nominal_controller
 from breakaway.errors import ScenarioError, StudyError
+from breakaway.identification.joint_file import JointFile
 from breakaway.run import Outcome, RunMetrics
 from breakaway.scenario.distribution import Distribution, Samples
 from breakaway.scenario.files import load_scenario
@@ -50,6 +51,10 @@ def _loaded(scenario: object) -> object:
     return load_scenario(scenario) if isinstance(scenario, str) else scenario
 
 
+def _loaded_joint(joint: object) -> object:
+    return JointFile.load(joint) if isinstance(joint, str) else joint
+
+
 def _known_metrics(names: list[str]) -> list[str]:
     for name in names:
         if name not in METRICS:
@@ -71,6 +76,9 @@ class StudyBase(StudyModel):
     scenario: Annotated[Scenario, BeforeValidator(_loaded)]
     """The scenario: the name of a preset, the path of a file (from the study's own folder), or
     its tables."""
+    joint: Annotated[JointFile, BeforeValidator(_loaded_joint)] | None = None
+    """A joint that was identified from a log: the path of its file (from the study's own folder).
+    Its values are laid over the scenario, and its draws join what differs from part to part."""
     changes: dict[str, Any] = Field(default_factory=dict)
     """What is changed in the scenario, by dotted path, such as "joint.stiction_n"."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] | None = None
@@ -92,6 +100,8 @@ class StudyBase(StudyModel):
     def base(self) -> Scenario:
         """The scenario with the study's changes and seed."""
         scenario = self.scenario
+        if self.joint is not None:
+            scenario = changed(scenario, self.joint.scenario_changes(), "joint")
         if self.changes:
             scenario = changed(scenario, self.changes, "changes")
         return scenario if self.seed is None else scenario.with_(seed=self.seed)
@@ -105,6 +115,20 @@ class StudyBase(StudyModel):
     def shown(self) -> tuple[str, ...]:
         """Metrics that tables and figures show."""
         return HEADLINES if self.metrics is None else tuple(self.metrics)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _draws_of_the_joint(cls, values: Any) -> Any:  # noqa: ANN401 - pydantic checks them
+        """Let the draws of a joint file vary, but where the study says otherwise."""
+        if not isinstance(values, dict) or values.get("joint") is None:
+            return values
+        joint = _loaded_joint(values["joint"])
+        if not isinstance(joint, JointFile):
+            return values
+        drawn = {path: law.model_dump() for path, law in joint.vary().items()}
+        given = values.get("changes") or {}
+        own = {path: law for path, law in drawn.items() if path not in given}
+        return {**values, "joint": joint, "vary": {**own, **(values.get("vary") or {})}}
 
     @model_validator(mode="after")
     def _varies_numbers_of_the_scenario(self) -> Self:
@@ -364,6 +388,9 @@ class ComparedController(StudyModel):
     scenario: Annotated[Scenario, BeforeValidator(_loaded)] | None = None
     """A scenario whose controller and actuator are taken; gains that it leaves open are designed
     for the study's scenario. Left out: those of the study's scenario."""
+    joint: Annotated[JointFile, BeforeValidator(_loaded_joint)] | None = None
+    """A joint that was identified from a log: the path of its file (from the study's own folder).
+    Its values are laid over the scenario, and its draws join what differs from part to part."""
     changes: dict[str, Any] = Field(default_factory=dict)
     """What is changed in the controller, the actuator, the reference or the timing."""
 
