@@ -1,6 +1,7 @@
 """Every failure is a message and an exit code, without a traceback or a half-written file."""
 
 import importlib
+import json
 import os
 import signal
 import subprocess
@@ -10,9 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import breakaway as bk
+from breakaway.identification import JointFile
 
 Call = Callable[..., Any]
 COMMAND = [sys.executable, "-m", "breakaway.cli.main"]
@@ -62,7 +65,9 @@ def test_a_wrong_scenario_is_explained(
         (("run",), "Missing argument"),
         (("runn", "paper_as_computed"), "No such command"),
         (("identify", "none.csv"), "none.csv: there is no such file"),
-        (("identify", "none.csv", "--format", "mat"), "--format"),
+        (("identify", "none.csv", "--format", "xls"), "--format"),
+        (("identify", "none.mat", "--format", "mat"), "none.mat: there is no such file"),
+        (("identify", "none"), "none: there is no such file"),
         (("init", "x.toml", "--preset", "paper_as_print"), "did you mean paper_as_printed?"),
     ],
 )
@@ -154,3 +159,43 @@ def test_ctrl_c_leaves_nothing_behind(tmp_path: Path) -> None:
     stdout, stderr = process.communicate(timeout=60)
     assert (process.returncode, stdout, stderr) == (130, "", "interrupted\n")
     assert not out.exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_ends_a_fit_with_the_best_so_far(tmp_path: Path) -> None:
+    t_s = np.arange(20_000) / 1000.0
+    x = 0.02 * np.sin(5 * t_s) + 0.01 * np.sin(13 * t_s + 1)
+    v = 0.1 * np.cos(5 * t_s) + 0.13 * np.cos(13 * t_s + 1)
+    log, out = tmp_path / "log.csv", tmp_path / "joint.toml"
+    table = np.column_stack([t_s, x, 30.0 * np.tanh(v / 0.01) + 40.0 * v])
+    np.savetxt(log, table, "%.9g", ",", header="t_s,position_m,force_n", comments="")
+    script = (  # says when the fit is under way
+        "import importlib, sys\n"
+        "home = importlib.import_module('breakaway.identification.output_error')\n"
+        "plain = home.minimize\n"
+        "def minimize(*args):\n"
+        "    print('fitting', file=sys.stderr, flush=True)\n"
+        "    return plain(*args)\n"
+        "home.minimize = minimize\n"
+        "from breakaway.cli.main import main\n"
+        "main()\n"
+    )
+    args = ["identify", str(log), "--law", "lugre", "--starts", "400", "--json", "--out", str(out)]
+    process = subprocess.Popen(
+        [sys.executable, "-c", script, *args],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    assert process.stderr.readline() == "fitting\n"
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    stdout, stderr = process.communicate(timeout=120)
+    assert process.returncode == 0, stderr[-2000:]
+    assert stderr.replace("fitting", "").strip() == ""
+    content = json.loads(stdout)
+    assert content["complete"] is False
+    assert "stopped before it was done" in content["notes"][0]
+    fit = JointFile.load(out).provenance.fit
+    assert fit is not None and not fit.complete

@@ -10,7 +10,14 @@ import pytest
 
 import breakaway as bk
 from breakaway.errors import LogError, OutputError, ScenarioError
-from breakaway.identification import InertiaFrictionFit, JointFile, identify_inertia_friction
+from breakaway.identification import (
+    Cascade,
+    Identification,
+    InertiaFrictionFit,
+    JointFile,
+    identify,
+    identify_inertia_friction,
+)
 from breakaway.logs import Log
 
 
@@ -165,3 +172,119 @@ def test_refuses_what_is_no_joint_file(tmp_path: Path) -> None:
     (tmp_path / "joint.toml").write_bytes(b"\xff\xfe")
     with pytest.raises(ScenarioError, match="can not be read as text"):
         JointFile.load(tmp_path / "joint.toml")
+
+
+# From an identification by simulation.
+
+
+def told(found: Identification) -> dict[str, float]:
+    return {one.name: one.value for one in found.estimates if one.identifiable}
+
+
+@pytest.fixture(scope="module")
+def by_law(rich_fit: Identification) -> JointFile:
+    return JointFile.from_identification(rich_fit, seed=7)
+
+
+def test_gathers_an_identification(by_law: JointFile, rich_fit: Identification) -> None:
+    values = told(rich_fit)
+    assert by_law.scenario_changes() == {
+        "joint.coulomb_n": values["coulomb_n"],
+        "joint.viscous_n_s_per_m": values["viscous_n_s_per_m"],
+        "joint.stiction_n": pytest.approx(values["stiction_ratio"] * values["coulomb_n"]),
+        "joint.stiffness_n_per_m": values["stiffness_n_per_m"],
+        "joint.damping_n_s_per_m": values["damping_n_s_per_m"],
+        "joint.stribeck_velocity_m_per_s": values["stribeck_velocity_m_per_s"],
+    }
+    assert by_law.rig.offset_n == values["offset_n"]
+    one = rich_fit["stiffness_n_per_m"]
+    assert by_law.interval[one.name] == [one.low, one.high]
+    assert by_law.standard_error[one.name] == one.standard_error
+    assert by_law.provenance.method == "output error, LuGre, imposed motion"
+    assert by_law.provenance.fit is not None
+    assert (by_law.provenance.fit.law, by_law.provenance.fit.starts) == ("lugre", 4)
+    assert by_law.provenance.fit.complete
+    assert any(note.startswith("stiction peak: ") for note in by_law.provenance.notes)
+    assert set(by_law.not_identified) == {"part.mass_kg", "joint.engagement_length_m"}
+
+
+def test_an_identification_comes_back_as_it_was_saved(by_law: JointFile, tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    by_law.save(path)
+    assert JointFile.load(path) == by_law
+    assert by_law.draws is not None and by_law.draws.source == "normal"
+    assert {len(column) for column in by_law.draws.values.values()} == {200}
+
+
+def test_draws_lie_about_the_values_and_are_chosen_by_the_seed(
+    by_law: JointFile, rich_fit: Identification
+) -> None:
+    assert by_law.draws is not None
+    for path, value in by_law.scenario_changes().items():
+        column = np.array(by_law.draws.values[path])
+        assert abs(column.mean() - value) < 0.3 * column.std()
+    assert JointFile.from_identification(rich_fit, seed=7) == by_law
+    assert JointFile.from_identification(rich_fit, seed=8).draws != by_law.draws
+
+
+def test_every_draw_is_a_valid_scenario(by_law: JointFile) -> None:
+    assert by_law.draws is not None
+    base = bk.load_scenario("paper_as_computed")
+    for row in range(0, 200, 20):
+        drawn = {path: column[row] for path, column in by_law.draws.values.items()}
+        assert base.with_(drawn).joint.coulomb_n == drawn["joint.coulomb_n"]
+
+
+def test_what_the_log_does_not_tell_stays_out(rich: Log) -> None:
+    found = identify(rich, law="coulomb", starts=1, fixed={"mass_kg": 2.0})
+    joint = JointFile.from_identification(found)
+    assert set(joint.scenario_changes()) == {"joint.coulomb_n", "joint.viscous_n_s_per_m"}
+    assert joint.not_identified["joint.stiction_n"] == "law 'coulomb' does not have it"
+    assert joint.not_identified["joint.stiffness_n_per_m"] == "law 'coulomb' does not have it"
+    assert "part.mass_kg" in joint.not_identified
+    assert set(joint.vary()) == set(joint.scenario_changes())
+
+
+def test_sides_give_the_positive_one(log: Log) -> None:
+    found = identify(log, law="coulomb", asymmetric=True, fixed={"mass_kg": 5.0}, starts=1)
+    joint = JointFile.from_identification(found)
+    assert joint.joint.coulomb_n == found["coulomb_positive_n"].value
+    assert joint.joint.viscous_n_s_per_m == found["viscous_positive_n_s_per_m"].value
+
+
+def test_a_mass_comes_from_a_log_that_tells_it(looped: Log) -> None:
+    cascade = Cascade(position_gain_per_s=60.0, velocity_gain_n_s_per_m=400.0, force_limit_n=100.0)
+    found = identify(looped, law="coulomb", motion="closed_loop", controller=cascade, starts=1)
+    joint = JointFile.from_identification(found)
+    assert joint.part.mass_kg == found["mass_kg"].value
+    assert "part.mass_kg" in joint.vary()
+
+
+def test_a_posterior_is_kept_as_draws(log: Log) -> None:
+    pytest.importorskip("emcee")
+    cut = log.between(0.0, 1.0).resampled(rate_hz=200.0)
+    found = identify(cut, law="coulomb", fixed={"mass_kg": 5.0}, starts=1)
+    joint = JointFile.from_identification(found, found.posterior(400))
+    assert joint.draws is not None
+    assert joint.draws.source == "posterior"
+    assert len(joint.draws.values["joint.coulomb_n"]) == 200
+
+
+def test_varies_rows_together(by_law: JointFile, joint: JointFile) -> None:
+    varied = by_law.vary()
+    assert set(varied) == set(by_law.scenario_changes())
+    assert {one.rows for one in varied.values()} == {"shared"}
+    assert set(joint.vary()) == set(joint.scenario_changes())
+    assert all(min(one.values) > 0.0 for one in joint.vary().values())
+
+
+def test_a_file_without_draws_has_no_spread(joint: JointFile) -> None:
+    bare = joint.model_copy(update={"draws": None})
+    with pytest.raises(ScenarioError, match="has no draws, so no spread is known"):
+        bare.vary()
+
+
+def test_a_joint_without_its_level_is_refused(rich: Log) -> None:
+    found = identify(rich, law="coulomb", fixed={"coulomb_n": 20.0}, starts=1)
+    with pytest.raises(LogError, match=r"coulomb_n .*no\s+joint to write"):
+        JointFile.from_identification(found)

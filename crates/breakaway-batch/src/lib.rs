@@ -22,5 +22,7 @@ pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
 pub use instructions::Instructions;
 pub use lanes::Lanes;
-pub use rig::{Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig};
+pub use rig::{
+    Differentiated, Kept, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
+};
 pub use run::{Job, Run, TRACE_COLUMNS, Trace, run};

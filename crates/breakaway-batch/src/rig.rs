@@ -36,10 +36,6 @@ pub struct Simulated {
     pub position_m: Vec<f64>,
     /// F in N.
     pub force_n: Vec<f64>,
-    /// dx/dp of each row, `variables` numbers side by side.
-    pub position_slopes: Vec<f64>,
-    /// dF/dp of each row.
-    pub force_slopes: Vec<f64>,
 }
 
 /// Sums over all rows of the squared differences between model and log.
@@ -146,19 +142,41 @@ impl<const P: usize> Number<Dual<f64, P>> for Seeded<'_> {
     }
 }
 
+/// What is kept of a differentiated run: one channel, of every so many-th row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// The position; else the force.
+    pub position: bool,
+    /// Rows per row that is kept, above 0.
+    pub every: usize,
+}
+
+/// A channel and its derivatives.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Differentiated {
+    /// x in m, or F in N.
+    pub values: Vec<f64>,
+    /// The derivatives of each, with respect to all variables side by side.
+    pub slopes: Vec<f64>,
+}
+
 struct Slopes<const P: usize> {
+    kept: Kept,
     variables: usize,
-    out: Simulated,
+    row: usize,
+    out: Differentiated,
 }
 
 impl<const P: usize> Keep<Dual<f64, P>> for Slopes<P> {
     #[inline(always)]
     fn row(&mut self, _: &Row<f64>, predicted: Predicted<Dual<f64, P>>) {
-        let (x, force) = (predicted.position_m, predicted.force_n);
-        self.out.position_m.push(x.value);
-        self.out.force_n.push(force.value);
-        self.out.position_slopes.extend_from_slice(&x.derivative[..self.variables]);
-        self.out.force_slopes.extend_from_slice(&force.derivative[..self.variables]);
+        if self.row == 0 {
+            let kept = if self.kept.position { predicted.position_m } else { predicted.force_n };
+            self.out.values.push(kept.value);
+            self.out.slopes.extend_from_slice(&kept.derivative[..self.variables]);
+            self.row = self.kept.every;
+        }
+        self.row -= 1;
     }
 }
 
@@ -166,14 +184,21 @@ struct Gradient<'a, const P: usize> {
     record: &'a Record,
     seeded: Seeded<'a>,
     variables: usize,
+    kept: Kept,
 }
 
 impl<const P: usize> Kernel for Gradient<'_, P> {
-    type Output = Simulated;
+    type Output = Differentiated;
     #[inline(always)]
-    fn run<V: Wide, const N: usize>(self) -> Simulated {
-        let mut keep = Slopes::<P> { variables: self.variables, out: Simulated::default() };
-        self.record.run(&self.seeded, &mut keep);
+    fn run<V: Wide, const N: usize>(self) -> Differentiated {
+        let Self { record, seeded, variables, kept } = self;
+        let rows = record.segments.iter().map(Range::len).sum::<usize>().div_ceil(kept.every);
+        let out = Differentiated {
+            values: Vec::with_capacity(rows),
+            slopes: Vec::with_capacity(rows * variables),
+        };
+        let mut keep = Slopes::<P> { kept, variables, row: 0, out };
+        record.run(&seeded, &mut keep);
         keep.out
     }
 }
@@ -189,16 +214,18 @@ pub fn differentiate_rig(
     record: &Record,
     numbers: &[f64],
     variable: &[Option<usize>],
+    kept: Kept,
     instructions: Instructions,
-) -> Simulated {
+) -> Differentiated {
     assert_eq!(numbers.len(), record.numbers());
     assert_eq!(variable.len(), numbers.len());
     let variables = variable.iter().flatten().max().map_or(0, |last| last + 1);
     let seeded = Seeded { numbers, variable };
     match variables {
-        0..=8 => instructions.run(Gradient::<8> { record, seeded, variables }),
-        9..=16 => instructions.run(Gradient::<16> { record, seeded, variables }),
-        _ => instructions.run(Gradient::<24> { record, seeded, variables }),
+        0..=8 => instructions.run(Gradient::<8> { record, seeded, variables, kept }),
+        9..=12 => instructions.run(Gradient::<12> { record, seeded, variables, kept }),
+        13..=16 => instructions.run(Gradient::<16> { record, seeded, variables, kept }),
+        _ => instructions.run(Gradient::<24> { record, seeded, variables, kept }),
     }
 }
 

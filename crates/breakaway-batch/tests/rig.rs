@@ -1,7 +1,7 @@
 //! A rig run plainly, with slopes and in lanes: the same bits each way.
 
 use breakaway_batch::{
-    Instructions, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
+    Instructions, Kept, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
 };
 use breakaway_core::control::{AntiWindup, Cascade, DerivativeOf, Gains, Pid, VelocityFrom};
 use breakaway_core::rig::{Drive, LimitedPid, RIG_NUMBERS, Rig, Row};
@@ -111,7 +111,7 @@ fn all(record: &Record) -> Vec<Option<usize>> {
 }
 
 /// The slopes of variable `index` of `count`, of x and then F.
-fn slopes(of: &Simulated, index: usize, count: usize) -> Vec<f64> {
+fn slopes(of: &Both, index: usize, count: usize) -> Vec<f64> {
     let column =
         |slopes: &[f64]| -> Vec<f64> { slopes[index..].iter().copied().step_by(count).collect() };
     [column(&of.position_slopes), column(&of.force_slopes)].concat()
@@ -130,16 +130,59 @@ fn a_simulation_has_the_bits_of_the_step_on_all_instructions() {
     }
 }
 
+/// Both channels of all rows, and their derivatives.
+struct Both {
+    values: Simulated,
+    position_slopes: Vec<f64>,
+    force_slopes: Vec<f64>,
+}
+
+fn differentiated(
+    record: &Record,
+    numbers: &[f64],
+    variable: &[Option<usize>],
+    on: Instructions,
+) -> Both {
+    let one =
+        |position| differentiate_rig(record, numbers, variable, Kept { position, every: 1 }, on);
+    let (x, force) = (one(true), one(false));
+    Both {
+        values: Simulated { position_m: x.values, force_n: force.values },
+        position_slopes: x.slopes,
+        force_slopes: force.slopes,
+    }
+}
+
+#[test]
+fn every_so_many_th_row_is_kept() {
+    let on = Instructions::fastest();
+    for record in records() {
+        let numbers = model(&record, 0);
+        let count = record.numbers();
+        let kept = |every| {
+            let kept = Kept { position: false, every };
+            differentiate_rig(&record, &numbers, &all(&record), kept, on)
+        };
+        let (whole, thin) = (kept(1), kept(7));
+        assert_eq!(thin.values.len(), (3 * 97_usize).div_ceil(7));
+        for (row, value) in thin.values.iter().enumerate() {
+            assert_eq!(value.to_bits(), whole.values[7 * row].to_bits());
+            let (thin, whole) = (&thin.slopes[row * count..], &whole.slopes[7 * row * count..]);
+            assert_eq!(bits(&thin[..count]), bits(&whole[..count]));
+        }
+    }
+}
+
 #[test]
 fn with_slopes_the_values_keep_their_bits_on_all_instructions() {
     for record in records() {
         let numbers = model(&record, 0);
-        let differentiate = |on| differentiate_rig(&record, &numbers, &all(&record), on);
+        let differentiate = |on| differentiated(&record, &numbers, &all(&record), on);
         let expected = differentiate(Instructions::fastest());
         assert_eq!(expected.position_slopes.len(), 3 * 97 * record.numbers());
         for instructions in Instructions::available() {
             let ours = differentiate(instructions);
-            assert_same_values(&ours, &simulate_rig(&record, &numbers, instructions));
+            assert_same_values(&ours.values, &simulate_rig(&record, &numbers, instructions));
             assert_eq!(bits(&ours.position_slopes), bits(&expected.position_slopes));
             assert_eq!(bits(&ours.force_slopes), bits(&expected.force_slopes));
         }
@@ -151,7 +194,7 @@ fn slopes_are_those_of_differences() {
     let on = Instructions::fastest();
     for record in records() {
         let numbers = model(&record, 0);
-        let exact = differentiate_rig(&record, &numbers, &all(&record), on);
+        let exact = differentiated(&record, &numbers, &all(&record), on);
         for place in 0..record.numbers() {
             let h = 1e-6 * numbers[place]; // few rows change their direction within it
             let moved = |by| {
@@ -181,7 +224,7 @@ fn an_offset_belongs_to_its_segment() {
     let on = Instructions::fastest();
     for record in records() {
         let numbers = model(&record, 0);
-        let run = differentiate_rig(&record, &numbers, &all(&record), on);
+        let run = differentiated(&record, &numbers, &all(&record), on);
         for segment in 0..3 {
             let slopes = slopes(&run, SHARED.len() + segment, record.numbers());
             for (n, slope) in slopes.into_iter().enumerate() {
@@ -209,9 +252,9 @@ fn tied_numbers_have_the_sum_of_their_slopes() {
         let viscous = places("viscous_positive").expect("a number");
         (tied[coulomb], tied[coulomb + 1]) = (Some(1), Some(1));
         (tied[viscous], tied[viscous + 1]) = (Some(0), Some(0));
-        let ours = differentiate_rig(&record, &numbers, &tied, on);
-        let apart = differentiate_rig(&record, &numbers, &all(&record), on);
-        assert_same_values(&ours, &apart);
+        let ours = differentiated(&record, &numbers, &tied, on);
+        let apart = differentiated(&record, &numbers, &all(&record), on);
+        assert_same_values(&ours.values, &apart.values);
         for (variable, place) in [(1, coulomb), (0, viscous)] {
             let ours = slopes(&ours, variable, 2);
             let parts = [0, 1].map(|i| slopes(&apart, place + i, record.numbers()));
@@ -231,19 +274,19 @@ fn a_slope_does_not_depend_on_how_many_there_are() {
     for drive in DRIVES {
         let record = record(drive, true, 12);
         let numbers = model(&record, 0);
-        let all = differentiate_rig(&record, &numbers, &all(&record), on);
+        let all = differentiated(&record, &numbers, &all(&record), on);
         let nine: Vec<_> = (0..24).map(|place: usize| (place < 9).then(|| 8 - place)).collect();
-        let nine = differentiate_rig(&record, &numbers, &nine, on);
+        let nine = differentiated(&record, &numbers, &nine, on);
         for place in 0..24 {
             let alone: Vec<_> = (0..24).map(|other| (other == place).then_some(0)).collect();
-            let alone = slopes(&differentiate_rig(&record, &numbers, &alone, on), 0, 1);
+            let alone = slopes(&differentiated(&record, &numbers, &alone, on), 0, 1);
             assert_eq!(bits(&slopes(&all, place, 24)), bits(&alone), "{place}");
             if place < 9 {
                 assert_eq!(bits(&slopes(&nine, 8 - place, 9)), bits(&alone), "{place}");
             }
         }
-        let none = differentiate_rig(&record, &numbers, &[None; 24], on);
-        assert_eq!(none, simulate_rig(&record, &numbers, on));
+        let none = differentiated(&record, &numbers, &[None; 24], on);
+        assert_eq!(none.values, simulate_rig(&record, &numbers, on));
     }
 }
 

@@ -266,9 +266,14 @@ impl<R: Real> Rig<R> {
         let force_n =
             self.mass_kg.mul_add(row.acceleration_m_per_s2, friction_n + self.rig_force(x));
         state.plant.position_m = x;
-        let h = row.period_s * R::constant(1.0 / f64::from(steps));
+        let share = R::constant(1.0 / f64::from(steps));
+        let h = row.period_s * share;
+        // The speed goes linearly on from the row's, so that the travel is what was measured.
+        let change = R::constant(2.0) * (row.mean_velocity_m_per_s - v) * share;
+        let mut speed = R::constant(0.5).mul_add(change, v);
         for _ in 0..steps {
-            self.carry_bristle(&mut state.plant, row.mean_velocity_m_per_s, h);
+            self.carry_bristle(&mut state.plant, speed, h);
+            speed = speed + change;
         }
         Predicted { position_m: x, force_n }
     }

@@ -1,8 +1,6 @@
 //! Models of a rig, run against a record of it.
 
-use breakaway_batch::{
-    Instructions, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
-};
+use breakaway_batch::{Instructions, Kept, Record, differentiate_rig, rig_misfits, simulate_rig};
 use breakaway_core::rig::Row;
 use pyo3::buffer::PyBuffer;
 use pyo3::exceptions::PyValueError;
@@ -71,27 +69,25 @@ impl RigRecord {
         Ok([as_bytes(py, &out.position_m)?, as_bytes(py, &out.force_n)?])
     }
 
-    /// Position and force of each row and their derivatives, as bytes of f64. `variable` is the
+    /// A channel of every so many-th row and its derivatives, as bytes of f64. `variable` is the
     /// variable that each number is, or none.
     fn differentiate<'py>(
         &self,
         py: Python<'py>,
         numbers: Vec<f64>,
         variable: Vec<Option<usize>>,
-    ) -> PyResult<[Bytes<'py>; 4]> {
+        position: bool,
+        every: usize,
+    ) -> PyResult<[Bytes<'py>; 2]> {
         self.check(numbers.len())?;
         self.check(variable.len())?;
-        if variable.iter().flatten().any(|&index| index >= 24) {
-            return Err(PyValueError::new_err("more than 24 variables"));
+        if every == 0 || variable.iter().flatten().any(|&index| index >= 24) {
+            return Err(PyValueError::new_err("no rows are kept, or there are over 24 variables"));
         }
-        let out: Simulated =
-            py.detach(|| differentiate_rig(&self.0, &numbers, &variable, Instructions::fastest()));
-        Ok([
-            as_bytes(py, &out.position_m)?,
-            as_bytes(py, &out.force_n)?,
-            as_bytes(py, &out.position_slopes)?,
-            as_bytes(py, &out.force_slopes)?,
-        ])
+        let kept = Kept { position, every };
+        let instructions = Instructions::fastest();
+        let out = py.detach(|| differentiate_rig(&self.0, &numbers, &variable, kept, instructions));
+        Ok([as_bytes(py, &out.values)?, as_bytes(py, &out.slopes)?])
     }
 
     /// Sums of squared differences of position and of force for each of many models, as bytes of

@@ -55,7 +55,7 @@ def compare_laws(
         Rows that are predicted, not fitted.
     laws : sequence of str
         Laws, from simple to rich.
-    settings
+    **settings
         Further settings of `identify`; ``repeats`` by default is all before ``held_out``.
 
     Returns

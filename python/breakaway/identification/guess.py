@@ -105,7 +105,7 @@ def first_guess(parameter: Parameter, sizes: Scales, settings: RunSettings) -> t
         "stiction_ratio": (1.0, 0.5),
         "stribeck_velocity_m_per_s": (0.1 * sizes.speed_m_per_s, 2.0),
         "stiffness_n_per_m": (stiffness, 3.0),
-        "damping_n_s_per_m": (damping, 3.0),
+        "damping_n_s_per_m": (damping, damping),
         "elastic_share": (0.5, 0.7),
         "coulomb_slope_n_per_m": (0.0, 0.3 * slope),
         "spring_n_per_m": (0.0, 0.3 * slope),
@@ -115,7 +115,7 @@ def first_guess(parameter: Parameter, sizes: Scales, settings: RunSettings) -> t
     if parameter.name.startswith("coulomb"):
         return sizes.coulomb_n, 0.5
     if parameter.name.startswith("viscous"):
-        return sizes.viscous_n_s_per_m, 1.0
+        return sizes.viscous_n_s_per_m, 0.5 * sizes.viscous_n_s_per_m
     return sizes.offset_n, 0.1 * sizes.force_n
 
 
@@ -126,6 +126,8 @@ def bounds_of(
     low, high = parameter.low, parameter.high
     if parameter.positive and high > 1e8:
         low, high = guess / REACH, guess * REACH
+    if parameter.may_vanish:
+        high = guess * REACH
     if parameter.name == "stiffness_n_per_m" and settings.motion != "imposed":
         high = sizes.stiffest(settings)
     return low, high

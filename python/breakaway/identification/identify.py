@@ -37,6 +37,7 @@ from breakaway.identification.record import (
 )
 from breakaway.identification.uncertainty import (
     NOT_IDENTIFIABLE,
+    NOT_TOLD_FROM_0,
     Covariance,
     Posterior,
     Profile,
@@ -51,6 +52,7 @@ from breakaway.scenario.controller import Pid
 
 Method = Literal["least_squares", "output_error"]
 MOST_EVALUATIONS = 100
+STEPS: Mapping[str, int] = {"imposed": 4, "free": 1, "closed_loop": 1}
 
 
 @dataclass(frozen=True)
@@ -242,7 +244,8 @@ class Identification:
 
         Notes
         -----
-        Quicker than `posterior`, and rougher: parameters that are not identifiable are held.
+        Quicker than `posterior`, and rougher: parameters that are not identifiable are held, and
+        draws below 0 of those that can not be are mirrored there.
 
         """
         inner = self.internals
@@ -252,7 +255,10 @@ class Identification:
         rng = np.random.default_rng(seed)
         matrix = inner.covariance.matrix[np.ix_(told, told)]
         at[:, told] += rng.multivariate_normal(np.zeros(len(told)), matrix, samples)
-        return {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
+        drawn = {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
+        return {
+            one.name: np.abs(drawn[one.name]) if one.may_vanish else drawn[one.name] for one in free
+        }
 
     def _place(self, name: str) -> int:
         names = [one.name for one in self.estimates]
@@ -286,7 +292,7 @@ def identify(
     origin_m: float | None = None,
     force_held: bool = True,
     lowpass_hz: float | None = None,
-    steps_per_row: int = 1,
+    steps_per_row: int | None = None,
     loss: Loss = "linear",
     starts: int = 8,
     seed: int = 0,
@@ -338,8 +344,8 @@ def identify(
     lowpass_hz : float, optional
         Cutoff of the low-pass that velocity and acceleration are taken from, where the log is
         even; by default as `breakaway.logs.derived.default_lowpass_hz` says.
-    steps_per_row : int
-        Integrator steps from row to row.
+    steps_per_row : int, optional
+        Integrator steps from row to row; by default 4 where motion is imposed, else 1.
     loss : {'linear', 'soft_l1', 'huber', 'cauchy'}
         All but the first are robust to outliers.
     starts : int
@@ -385,14 +391,15 @@ def identify(
     _known("motion", motion, MOTIONS)
     _known("loss", loss, LOSSES)
     _at_least_one("starts", starts)
-    _at_least_one("steps_per_row", steps_per_row)
+    steps = STEPS[motion] if steps_per_row is None else steps_per_row
+    _at_least_one("steps_per_row", steps)
     settings = RunSettings(
         motion=motion,
         controller=controller,
         force_limit_n=force_limit_n,
         force_held=force_held,
         lowpass_hz=lowpass_hz,
-        steps=steps_per_row,
+        steps=steps,
         origin_m=_origin(log, position_dependent, origin_m),
     )
     rows = measured_rows(log, settings)
@@ -421,9 +428,9 @@ def identify(
         complete, starts, agreeing = True, 1, 1
     else:
         drawn = screened_starts(problem, guess, spread, bounds, starts, seed)
-        minima, complete = minimize_all(problem, drawn, bounds, loss, MOST_EVALUATIONS, progress)
-        best = min(minima, key=lambda one: one.cost)
-        agreeing = sum(one.cost <= best.cost * (1.0 + 1e-4) for one in minima)
+        best, agreeing, complete = minimize_all(
+            problem, drawn, bounds, loss, MOST_EVALUATIONS, progress
+        )
     judged = tuple(verdict for _, verdict in back.values())
     found = _Found(
         log, chosen, settings, tuple(spans), held, judged, rows, problem, bounds, loss, seed
@@ -554,15 +561,20 @@ class _Found:
         out = []
         for i, parameter in enumerate(layout.free):
             error = math.sqrt(known.matrix[i, i])
-            at_end = best[i] - low[i] < 1e-6 * (high[i] - low[i]) or (
-                high[i] - best[i] < 1e-6 * (high[i] - low[i])
-            )
-            told = not at_end and (not parameter.positive or error < NOT_IDENTIFIABLE)
-            ends = interval(self.problem, best, i, error)
             value = float(parameter.external(best[i : i + 1])[0])
-            remark = "at the end of its range" if at_end else ""
-            if not told and not at_end:
+            ends = interval(self.problem, best, i, error)
+            width = high[i] - low[i]
+            at_end = min(best[i] - low[i], high[i] - best[i]) < 1e-6 * width
+            remark = ""
+            if parameter.may_vanish:
+                ends = (max(ends[0], 0.0), ends[1])
+                if not error < NOT_TOLD_FROM_0 * value:
+                    remark = f"not told from 0, at most {ends[1]:.3g} in its unit"
+            elif at_end:
+                remark = "at the end of its range"
+            elif parameter.positive and not error < NOT_IDENTIFIABLE:
                 remark = f"known within a factor of {math.exp(min(2 * error, 50.0)):.2g} only"
+            told = not remark
             out.append(Estimate(parameter.name, value, error * slope[i], *ends, told, remark))
         return out
 

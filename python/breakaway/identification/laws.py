@@ -16,6 +16,13 @@ LawName = Literal["coulomb", "stribeck", "lugre", "elasto_plastic"]
 LAWS: tuple[LawName, ...] = ("coulomb", "stribeck", "lugre", "elasto_plastic")
 """Coulomb and viscous friction; with a Stribeck term; with a bristle; with an elastic range."""
 
+LABELS: Mapping[LawName, str] = {
+    "coulomb": "Coulomb",
+    "stribeck": "Stribeck",
+    "lugre": "LuGre",
+    "elasto_plastic": "elasto-plastic",
+}
+
 SHARED = RIG_NUMBERS[:-1]
 """Numbers of the core that all repeats share; the last, the offset, may differ between them."""
 
@@ -25,7 +32,8 @@ class Parameter:
     """One number that is identified.
 
     ``numbers`` are the numbers of the core that it sets; one parameter may set several, as where
-    friction is equal in both directions. A positive parameter is fitted as its logarithm.
+    friction is equal in both directions. A positive parameter is fitted as its logarithm; one that
+    may be 0 (``low`` is 0) as it is, or it would be stuck there.
     """
 
     name: str
@@ -33,6 +41,11 @@ class Parameter:
     positive: bool
     low: float
     high: float
+
+    @property
+    def may_vanish(self) -> bool:
+        """Whether it is at least 0, and may be 0."""
+        return self.low == 0.0
 
     def internal(self, value: float) -> float:
         """Return the number that the optimizer sees."""
@@ -64,7 +77,7 @@ class Law:
     @property
     def label(self) -> str:
         """The law in words, for tables and figures."""
-        words = [self.name.replace("_", "-").replace("lugre", "LuGre")]
+        words = [LABELS[self.name]]
         words += ["each direction"] * self.asymmetric + ["position"] * self.position_dependent
         return ", ".join(words)
 
@@ -76,25 +89,28 @@ class Law:
         """
         wide = (1e-9, 1e9)
         out = [Parameter("mass_kg", ("mass_kg",), True, *wide)]
-        for quantity, unit in (("coulomb", "n"), ("viscous", "n_s_per_m")):
-            sides = tuple(f"{quantity}_{side}_{unit}" for side in ("positive", "negative"))
-            if self.asymmetric:
-                out += [Parameter(side, (side,), True, *wide) for side in sides]
-            else:
-                out.append(Parameter(f"{quantity}_{unit}", sides, True, *wide))
+        out += self._sides("coulomb", "n", positive=True)
+        out += self._sides("viscous", "n_s_per_m", positive=False)
         if self.name != "coulomb":
             out.append(Parameter("stiction_ratio", ("stiction_ratio",), True, 0.1, 20.0))
             speed = "stribeck_velocity_m_per_s"
             out.append(Parameter(speed, (speed,), True, *wide))
         if self.has_bristle:
             out.append(Parameter("stiffness_n_per_m", ("stiffness_n_per_m",), True, *wide))
-            out.append(Parameter("damping_n_s_per_m", ("damping_n_s_per_m",), True, *wide))
+            out.append(Parameter("damping_n_s_per_m", ("damping_n_s_per_m",), False, 0.0, 1e9))
         if self.elasto_plastic:
             out.append(Parameter("elastic_share", ("elastic_share",), True, 0.02, 0.98))
         if self.position_dependent:
             for name in ("coulomb_slope_n_per_m", "spring_n_per_m"):
                 out.append(Parameter(name, (name,), False, -1e9, 1e9))
         return (*out, *self._offsets(offsets))
+
+    def _sides(self, quantity: str, unit: str, *, positive: bool) -> list[Parameter]:
+        low = 1e-9 if positive else 0.0
+        sides = tuple(f"{quantity}_{side}_{unit}" for side in ("positive", "negative"))
+        if self.asymmetric:
+            return [Parameter(side, (side,), positive, low, 1e9) for side in sides]
+        return [Parameter(f"{quantity}_{unit}", sides, positive, low, 1e9)]
 
     def _offsets(self, offsets: int) -> list[Parameter]:
         if offsets == 1:

@@ -6,7 +6,7 @@ import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -22,6 +22,9 @@ LOSSES: tuple[Loss, ...] = ("linear", "soft_l1", "huber", "cauchy")
 
 HOPELESS = 1e6
 """Residual, in units of the scale, that stands for a simulation that is not finite."""
+
+THINNED_ROWS = 3000
+"""Rows whose residuals decide between several starts."""
 
 SCREENED_PER_START = 8
 """Random sets of parameters that are tried, in lanes, for each start that is followed up."""
@@ -47,41 +50,53 @@ class Problem:
     channel: str
     measured: Array
     scale: float
+    every: int = 1
     stop: threading.Event = field(default_factory=threading.Event)
 
     @property
-    def _place(self) -> int:
-        return 0 if self.channel == "position_m" else 1
+    def _is_position(self) -> bool:
+        return self.channel == "position_m"
+
+    def thinned(self, every: int) -> Problem:
+        """Return the problem with the residuals of every ``every``-th row only."""
+        return replace(self, every=every)
 
     def predicted(self, internal: Array) -> Array:
         """Simulate the channel."""
         numbers = self.layout.numbers(internal).tolist()
-        return np.frombuffer(self.record.simulate(numbers)[self._place])
+        position, force = self.record.simulate(numbers)
+        return np.frombuffer(position if self._is_position else force)
 
     def residual(self, internal: Array) -> Array:
         """Return (simulated - measured) / scale."""
         if self.stop.is_set():
             raise Stopped
+        return self._residual(self.predicted(internal)[:: self.every])
+
+    def _residual(self, predicted: Array) -> Array:
         with np.errstate(over="ignore", invalid="ignore"):
-            return _finite((self.predicted(internal) - self.measured) / self.scale)
+            return _finite((predicted - self.measured[:: self.every]) / self.scale)
 
     def residual_and_slopes(self, internal: Array) -> tuple[Array, Array]:
         """Return the residual and its derivatives with respect to the internal parameters."""
         if self.stop.is_set():
             raise Stopped
         layout = self.layout
-        out = self.record.differentiate(layout.numbers(internal).tolist(), list(layout.variable))
-        value, slopes = (np.frombuffer(out[self._place + at]) for at in (0, 2))
+        numbers = layout.numbers(internal).tolist()
+        out = self.record.differentiate(
+            numbers, list(layout.variable), self._is_position, self.every
+        )
+        value, slopes = (np.frombuffer(one) for one in out)
         with np.errstate(over="ignore", invalid="ignore"):
-            by_row = slopes.reshape(len(value), len(layout.free)) * layout.slope(internal)
-            residual = (value - self.measured) / self.scale
-            return _finite(residual), np.nan_to_num(by_row / self.scale, posinf=0.0, neginf=0.0)
+            factor = layout.slope(internal) / self.scale
+            by_row = slopes.reshape(len(value), len(layout.free)) * factor
+            return self._residual(value), np.nan_to_num(by_row, posinf=0.0, neginf=0.0)
 
     def sums_of_squares(self, internal: Array, threads: int = 0) -> Array:
         """Return the sum of squared residuals of many sets of parameters (k, n), in lanes."""
         numbers = np.ascontiguousarray(self.layout.numbers(internal).reshape(-1))
         pairs = np.frombuffer(self.record.misfits(numbers, threads or usable_cpus()))
-        sums = pairs.reshape(-1, 2)[:, self._place] / self.scale**2
+        sums = pairs.reshape(-1, 2)[:, 0 if self._is_position else 1] / self.scale**2
         worst = len(self.measured) * HOPELESS**2
         return np.minimum(np.nan_to_num(sums, nan=worst, posinf=worst), worst)
 
@@ -154,6 +169,10 @@ def screened_starts(
     return np.vstack([guess, drawn[order[: starts - 1]]])
 
 
+AGREEMENT = 1e-4
+"""Costs that differ by less than this share are those of one minimum."""
+
+
 def minimize_all(
     problem: Problem,
     starts: Array,
@@ -161,11 +180,31 @@ def minimize_all(
     loss: Loss,
     most: int,
     progress: Progress | None,
-) -> tuple[list[Minimum], bool]:
-    """Follow all starts, on threads; return what they came to and whether all were done.
+) -> tuple[Minimum, int, bool]:
+    """Follow all starts, on threads; return the best, how many came to it, and whether all ended.
 
-    Ctrl-C stops them; what they had come to is kept.
+    Where there are several, they are followed with the residuals of some thousand rows, evenly
+    thinned (all rows are simulated), and the best goes on from there with all residuals. Ctrl-C
+    stops them; what they had come to is kept.
     """
+    every = 1 if len(starts) == 1 else max(1, len(problem.measured) // THINNED_ROWS)
+    done, complete = _follow(problem.thinned(every), starts, bounds, loss, most, progress)
+    best = min(done, key=lambda one: one.cost)
+    agreeing = sum(one.cost <= best.cost * (1.0 + AGREEMENT) for one in done)
+    if every > 1 and complete:
+        polished, complete = _follow(problem, best.internal[None, :], bounds, loss, most, None)
+        best = polished[0]
+    return best, agreeing, complete
+
+
+def _follow(
+    problem: Problem,
+    starts: Array,
+    bounds: tuple[Array, Array],
+    loss: Loss,
+    most: int,
+    progress: Progress | None,
+) -> tuple[list[Minimum], bool]:
     complete = True
     with ThreadPoolExecutor(min(usable_cpus(), len(starts))) as pool:
         runs = [pool.submit(minimize, problem, start, bounds, loss, most) for start in starts]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from breakaway.identification.laws import SHARED, Law
 from breakaway.identification.record import (
@@ -33,7 +34,7 @@ class Prediction:
     measured_position_m: Array
     measured_velocity_m_per_s: Array
     measured_force_n: Array
-    segment: Array
+    segment: NDArray[np.int64]
     channel: str
 
     @property

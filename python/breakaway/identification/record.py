@@ -60,16 +60,20 @@ class Rows:
 
 
 def measured_rows(log: Log, settings: RunSettings) -> Rows:
-    """Derive what the core asks of each row; nothing is resampled."""
+    """Derive what the core asks of each row; nothing is resampled.
+
+    Speeds are those of the low-passed position where the log is even: differences of quantized
+    positions would jump by more than the speed over which friction changes.
+    """
     log.check_increasing()
     t_s, x, force = log.t_s, log.position_m, log.force_n
     steps = np.diff(t_s)
     even = bool(np.all(np.abs(steps / np.median(steps) - 1.0) <= SPACING_TOLERANCE))
-    lowpass_hz = None
+    lowpass_hz, path = None, x
     if even:
         motion = derive_motion(log, settings.lowpass_hz)
         velocity, acceleration = motion.velocity_m_per_s, motion.acceleration_m_per_s2
-        lowpass_hz = motion.lowpass_hz
+        lowpass_hz, path = motion.lowpass_hz, motion.position_m
     else:
         velocity = np.gradient(x, t_s)
         acceleration = np.gradient(velocity, t_s)
@@ -84,7 +88,7 @@ def measured_rows(log: Log, settings: RunSettings) -> Rows:
     origin = settings.origin_m
     rate = np.gradient(target, t_s)
     columns = [x - origin, velocity, acceleration, force, target - origin, rate]
-    columns += [np.append(steps, steps[-1]), np.append(np.diff(x) / steps, 0.0), held]
+    columns += [np.append(steps, steps[-1]), np.append(np.diff(path) / steps, 0.0), held]
     return Rows(log, np.array(columns), even, lowpass_hz)
 
 

@@ -22,6 +22,9 @@ LONGEST_WINDOW = 0.1
 NOT_IDENTIFIABLE = 0.5
 """Standard error of a positive parameter's logarithm from which it counts as not identifiable."""
 
+NOT_TOLD_FROM_0 = 0.25
+"""Standard error, as a share of its value, from which a parameter that may be 0 counts so too."""
+
 
 BURNED = 500
 """Steps of the posterior's walkers that are left out, while they forget where they began."""
@@ -96,10 +99,12 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
     running = np.cumsum(padded, axis=0)
     sums = running[window + 1 :] - running[: -window - 1]
     freedom = rows / max(rows - count, 1)
-    meat = freedom * (sums.T @ sums) / (window + 1)
-    sandwich = inverse @ meat @ inverse
+    influence = inverse @ sums.T * np.sqrt(freedom / (window + 1))
+    sandwich = influence @ influence.T
     variance = freedom * float(residual @ residual) / rows
-    weight = min(1.0, len(singular) / float(np.trace(inverse @ meat) / max(variance, 1e-300)))
+    inflation = float(np.sum((sums @ inverse) * sums))
+    inflation *= freedom / (window + 1) / max(variance, 1e-300)
+    weight = min(1.0, len(singular) / max(inflation, 1e-300))
     places = np.flatnonzero(told)
     matrix[np.ix_(places, places)] = sandwich / np.outer(size[told], size[told])
     return Covariance(matrix, window, weight, condition)

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from breakaway.identification.guess import MOVING
 from breakaway.identification.laws import Law
 from breakaway.identification.record import Rows, RunSettings
 from breakaway.logs.derived import noise_floor
 from breakaway.logs.log import Array
+
+Places = NDArray[np.integer[Any]]
+"""Numbers of rows."""
 
 if TYPE_CHECKING:
     from breakaway.identification.identify import Estimate
@@ -74,7 +78,7 @@ class Verdict:
     remedy: str = ""
 
 
-def excitation(rows: Rows, places: Array) -> Excitation:
+def excitation(rows: Rows, places: Places) -> Excitation:
     """Measure what a log excites, in the rows at ``places``."""
     x, v, _, force = rows.columns[:4, places]
     noise = noise_floor(rows.log, "position_m")
@@ -145,7 +149,7 @@ def _by_error(one: Estimate, found: Mapping[str, Estimate]) -> Verdict:
     if one.name == "stribeck_velocity_m_per_s" and ratio and ratio.low < 1.0 < ratio.high:
         return Verdict(one.name, False, "F_s / F_c is not told from 1: it acts on nothing", _SPEEDS)
     if one.identifiable:
-        return Verdict(one.name, True, "its interval is narrow")
+        return Verdict(one.name, True, f"95 % interval {one.low:.4g} to {one.high:.4g}")
     return Verdict(one.name, False, one.remark, _REMEDIES.get(one.name, _MORE))
 
 
@@ -209,10 +213,11 @@ def unexcited(
 
 def stiction_peak(found: Mapping[str, Estimate], verdict: Sequence[Verdict]) -> str:
     """Say in one sentence whether friction peaks before sliding."""
-    judged = {one.parameter: one for one in verdict}["stiction_ratio"]
     ratio = found.get("stiction_ratio")
-    if ratio is None:
-        return f"stiction peak: not identified ({judged.because})"
+    judged = next((one for one in verdict if one.parameter == "stiction_ratio"), None)
+    if ratio is None or judged is None:
+        because = "it was held in the fit" if judged is None else judged.because
+        return f"stiction peak: not identified ({because})"
     figure = f"F_s / F_c = {ratio.value:.3g}, 95 % interval {ratio.low:.3g} to {ratio.high:.3g}"
     if not judged.identifiable:
         return f"stiction peak: this log can not tell ({judged.because})"

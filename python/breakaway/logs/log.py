@@ -127,8 +127,14 @@ class Log:
         ----------
         channels : iterable of Channel
             At least one; their names differ.
-        source, sha256, ignored_columns, history
-            As for `Log`.
+        source : Path, optional
+            The file that they come from.
+        sha256 : str, optional
+            Digest of its bytes.
+        ignored_columns : iterable of str
+            Columns of the file that were not read.
+        history : iterable of str
+            What was done so far.
 
         Raises
         ------
@@ -303,8 +309,10 @@ class Log:
 
         Parameters
         ----------
-        start_s, end_s : float
-            Times on the log's own clock, in s; the stamps stay as they are.
+        start_s : float
+            First time on the log's own clock, in s; the stamps stay as they are.
+        end_s : float
+            Last time, in s.
 
         Raises
         ------
@@ -367,7 +375,14 @@ class Log:
         return self._with(kept, f"{dropped} samples with repeated stamps left out")
 
     def noted(self, note: str) -> Log:
-        """Return the same log with a line more in its history."""
+        """Return the same log with a line more in its history.
+
+        Parameters
+        ----------
+        note : str
+            The line.
+
+        """
         return self._with(self.channels.values(), note)
 
     def _with(self, channels: Iterable[Channel], *notes: str) -> Log:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -24,7 +25,7 @@ from breakaway.batch.batch import UNITS
 from breakaway.errors import LogError
 from breakaway.identification.comparison import ComparedLaw
 from breakaway.identification.identify import Identification
-from breakaway.identification.laws import SHARED
+from breakaway.identification.laws import SHARED, Law
 from breakaway.identification.prediction import Prediction
 from breakaway.identification.record import Rows, RunSettings, Span, core_record, measured_rows
 from breakaway.identification.uncertainty import LEVEL, Profile
@@ -38,7 +39,7 @@ Places = NDArray[np.intp]
 BINS = 1500
 """Stretches of time of which a long trace keeps the lowest and the highest value."""
 
-POINTS = 2500
+POINTS = 50_000
 """Most measured points in a cloud; of more, every so many-th is drawn."""
 
 DRAWS = 200
@@ -75,7 +76,7 @@ class FrictionPath:
     position_m: Array
     velocity_m_per_s: Array
     friction_n: Array
-    segment: NDArray[np.intp]
+    segment: Array
 
 
 def words_and_unit(name: str) -> tuple[str, str]:
@@ -93,10 +94,28 @@ def words_and_unit(name: str) -> tuple[str, str]:
 
     """
     end = next((end for end in UNITS if name.endswith(end)), "")
-    words = name.removesuffix(end).replace("_", " ")
-    for proper in ("coulomb", "stribeck"):
-        words = words.replace(proper, proper.capitalize())
-    return words, UNITS.get(end, "")
+    return _proper(name.removesuffix(end).replace("_", " ")), UNITS.get(end, "")
+
+
+def law_words(law: Law) -> str:
+    """Return a law in words, with names of people capitalized.
+
+    Parameters
+    ----------
+    law : Law
+        A law with its options.
+
+    Examples
+    --------
+    >>> law_words(Law("coulomb", asymmetric=True))
+    'Coulomb, each direction'
+
+    """
+    return _proper(law.label)
+
+
+def _proper(words: str) -> str:
+    return words.replace("coulomb", "Coulomb").replace("stribeck", "Stribeck")
 
 
 def easy_unit(values: object, unit: str) -> tuple[float, str]:
@@ -144,10 +163,9 @@ def plot_fit(prediction: Prediction, spans: Sequence[Span] = ()) -> Figure:
     near = _telling(prediction)
     with house_style():
         figure = house_figure(height=6.4)
-        # Two figures in one: the upper panels share their time, the lower one has its own.
-        above, below = figure.subfigures(2, 1, height_ratios=[1.75, 1.0])
-        whole, residual = above.subplots(2, 1, sharex=True, height_ratios=[1.9, 1.0])
-        zoom = below.subplots()
+        whole, residual, zoom = figure.subplots(3, 1, height_ratios=[1.8, 1.0, 1.4])
+        whole.sharex(residual)
+        whole.tick_params(labelbottom=False)
         factor, shown = scaled(measured, unit)
         for axes, rows in ((whole, everything), (zoom, near)):
             for values, style in ((measured, _MEASURED), (simulated, _SIMULATED)):
@@ -160,7 +178,8 @@ def plot_fit(prediction: Prediction, spans: Sequence[Span] = ()) -> Figure:
         residual.plot(t_s, drawn * per, color=COLORS["alternative"], linewidth=0.8)
         residual.set_ylabel(f"residual ({small})")
         residual.set_xlabel("time (s)")
-        whole.legend(loc="lower right", bbox_to_anchor=(1.0, 1.06), ncols=2, borderaxespad=0.1)
+        above = 1.1 if len(spans) > 1 else 1.0  # leaves a line for the names of the repeats
+        whole.legend(loc="lower right", bbox_to_anchor=(1.0, above), ncols=2, borderaxespad=0.1)
         start, end = float(prediction.t_s[near][0]), float(prediction.t_s[near][-1])
         for axes in (whole, residual):
             axes.axvspan(start, end, color=COLORS["fifth"], alpha=0.25, linewidth=0.0)
@@ -168,6 +187,7 @@ def plot_fit(prediction: Prediction, spans: Sequence[Span] = ()) -> Figure:
         zoom.set_xlim(start, end)
         zoom.set_xlabel("time (s), the shaded stretch enlarged")
         whole.set_xlim(float(prediction.t_s[0]), float(prediction.t_s[-1]))
+        figure.align_ylabels()
     return figure
 
 
@@ -221,9 +241,9 @@ def _draw_spread(axes: Axes, error: Array, unit: str) -> None:
     rms = float(np.sqrt(np.mean(error**2)))
     edge = max(4.0 * rms, 1e-300)
     beyond = int(np.count_nonzero(np.abs(error) > edge))
-    edges = np.linspace(-edge, edge, 61)
-    weights = np.full(len(error), 1.0 / (len(error) * (edges[1] - edges[0])))
-    axes.hist(error, edges, weights=weights, color=COLORS["ours"], alpha=0.55, label="residual")
+    weights = np.full(len(error), 60.0 / (len(error) * 2.0 * edge))
+    axes.hist(error, 60, range=(-edge, edge), weights=weights, color=COLORS["ours"], alpha=0.55)
+    axes.patches[0].set_label("residual")
     at = np.linspace(-edge, edge, 201)
     axes.plot(at, norm.pdf(at, 0.0, max(rms, 1e-300)), color=COLORS["text"], label="normal")
     beyond_text = f"; {beyond} of {len(error)} beyond" if beyond else ""
@@ -236,10 +256,11 @@ def _draw_spread(axes: Axes, error: Array, unit: str) -> None:
 def plot_friction_velocity(found: Identification) -> Figure:
     """Draw measured friction against velocity, with the identified steady curve and its band.
 
-    Points are the measured force less inertia, offset and spring, every so many-th row, as the
-    legend says. The curve is the steady friction at the origin of position; the band holds 95 % of the
-    curves of draws from the parameters' normal distribution. A second panel shows slow motion where
-    the Stribeck velocity is small against the speeds.
+    Points are the measured force less inertia, offset and spring: every so many-th row, as the
+    legend says, without those within one period of the low-pass of the log's ends, where it
+    rings. The curve is the steady friction at the origin of position; the band holds 95 % of the
+    curves of draws from the parameters' normal distribution. A second panel shows slow motion
+    where the Stribeck velocity is small against the speeds.
 
     Parameters
     ----------
@@ -254,6 +275,7 @@ def plot_friction_velocity(found: Identification) -> Figure:
     """
     _check_speeds(found)
     path = measured_friction(found)
+    quiet = _quiet_rows(found)
     top = 1.04 * float(np.abs(path.velocity_m_per_s).max())
     slow = _slow_end(found, top)
     with house_style():
@@ -261,16 +283,18 @@ def plot_friction_velocity(found: Identification) -> Figure:
         ends = [top] if slow is None else [top, slow]
         panels = np.atleast_1d(figure.subplots(1, len(ends), width_ratios=[1.5, 1.0][: len(ends)]))
         for axes, end in zip(panels, ends, strict=True):
-            _draw_friction(axes, found, path, end)
+            _draw_friction(axes, found, path, quiet, end)
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper right", ncols=3)
+        figure.legend(handles, labels, loc="outside upper right", ncols=3, markerscale=3.0)
     return figure
 
 
-def _draw_friction(axes: Axes, found: Identification, path: FrictionPath, end: float) -> None:
-    inside = np.flatnonzero(np.abs(path.velocity_m_per_s) <= end)
-    every = -(-len(inside) // POINTS)
-    rows = inside[::every]
+def _draw_friction(
+    axes: Axes, found: Identification, path: FrictionPath, quiet: Places, end: float
+) -> None:
+    every = -(-len(quiet) // POINTS)
+    rows = quiet[::every]
+    rows = rows[np.abs(path.velocity_m_per_s[rows]) <= end]
     half = np.linspace(0.0, end, 121)[1:]
     speeds = np.concatenate([-half[::-1], half])
     curve, low, high = _steady_band(found, speeds)
@@ -285,8 +309,9 @@ def _draw_friction(axes: Axes, found: Identification, path: FrictionPath, end: f
         markersize=3,
         markeredgewidth=0.0,
         color="#8A8A8A",
-        alpha=0.6,
+        alpha=0.5,
         label=f"measured, {text}",
+        rasterized=True,  # else every point of a long log would be an element of the page
     )
     for side in (speeds < 0.0, speeds > 0.0):
         at = speeds[side] * per_v
@@ -355,7 +380,7 @@ def plot_hysteresis(found: Identification) -> Figure:
 def _draw_loops(axes: Axes, loops: Mapping[str, list[tuple[Array, Array]]], kind: int) -> None:
     flat = np.concatenate([x for x, _ in loops["measured"]])
     factor, unit = scaled(flat, "m")
-    styles = {
+    styles: dict[str, dict[str, Any]] = {
         "measured": {"color": "#8A8A8A", "marker": ".", "markersize": 3, "linewidth": 0.8},
         "simulated": {"color": COLORS["ours"], "linewidth": 1.2},
     }
@@ -405,7 +430,7 @@ def plot_posterior(
             for j, column in enumerate(columns):
                 axes = panels[i, j]
                 if j > i:
-                    axes.set_visible(False)
+                    axes.remove()
                     continue
                 _corner_cell(axes, column, None if i == j else row)
                 if i < count - 1:
@@ -451,14 +476,14 @@ def _corner_cell(axes: Axes, column: _Drawn, row: _Drawn | None) -> None:
     axes.axvline(column.estimate, color=COLORS["alternative"], linewidth=0.9)
     axes.set_xlim(column.ends)
     if row is None:
-        axes.hist(column.values, 40, column.ends, color=COLORS["ours"], alpha=0.55)
+        axes.hist(column.values, 30, range=column.ends, color=COLORS["ours"], alpha=0.55)
         axes.set_yticks([])
         axes.spines["left"].set_visible(False)
         return
     axes.yaxis.set_major_locator(MaxNLocator(3))
     axes.axhline(row.estimate, color=COLORS["alternative"], linewidth=0.9)
     counts, xs, ys = np.histogram2d(column.values, row.values, 40, [column.ends, row.ends])
-    density = ndimage.gaussian_filter(counts, 1.5).T
+    density = ndimage.gaussian_filter(counts, 2.0).T
     levels = _enclosing(density, (0.95, 0.5))
     middle_x, middle_y = 0.5 * (xs[1:] + xs[:-1]), 0.5 * (ys[1:] + ys[:-1])
     axes.contourf(middle_x, middle_y, density, [*levels, density.max() * 1.01], colors=_SHADES)
@@ -527,7 +552,7 @@ def _draw_profile(axes: Axes, one: Profile, estimate: float) -> None:
     axes.axvspan(low * factor, high * factor, color=COLORS["ours"], alpha=0.15, linewidth=0.0)
     axes.patches[-1].set_label("95 % interval")
     axes.axhline(limit, color=COLORS["alarm"], linestyle=(0, (4, 2)), linewidth=1.0)
-    axes.lines[-1].set_label("χ² of 95 %")
+    axes.lines[-1].set_label("95 % quantile of χ²")
     axes.axvline(estimate * factor, color=COLORS["alternative"], linewidth=1.0, label="estimate")
     axes.plot(one.values * factor, one.deviance, marker="o", markersize=3, label="profile")
     axes.set_ylim(0.0, 2.2 * limit)
@@ -574,7 +599,7 @@ def plot_laws(compared: Sequence[ComparedLaw]) -> Figure:
             axes.set_xlabel(label)
             axes.set_xlim(-0.03 * max(numbers.max(), 1e-300), 1.08 * max(numbers.max(), 1e-300))
             axes.grid(visible=False, axis="y")
-        panels[0].set_yticks(place, [one.fit.law.label for one in compared])
+        panels[0].set_yticks(place, [law_words(one.fit.law) for one in compared])
         panels[0].set_ylim(len(compared) - 0.5, -0.5)
         for tick, one in zip(panels[0].get_yticklabels(), compared, strict=True):
             tick.set_color(COLORS["text"] if one.pays else COLORS["axis"])
@@ -678,7 +703,7 @@ def _path(found: Identification, x: Array, v: Array, a: Array, force: Array) -> 
     return FrictionPath(x + found.settings.origin_m, v, friction, found.fit.segment)
 
 
-def _fitted_rows(found: Identification) -> tuple[Rows, Places]:
+def _fitted_rows(found: Identification) -> tuple[Rows, Any]:
     rows = measured_rows(found.log, found.settings)
     return rows, np.searchsorted(rows.log.t_s, found.fit.t_s)
 
@@ -721,6 +746,14 @@ def _steady_band(found: Identification, speeds: Array) -> tuple[Array, Array, Ar
     return curve, low, high
 
 
+def _quiet_rows(found: Identification) -> Places:
+    """Return the fitted rows at which the low-pass does not ring at an end of the log."""
+    lowpass_hz = _fitted_rows(found)[0].lowpass_hz
+    t_s, all_s = found.fit.t_s, found.log.t_s
+    period_s = 1.0 / lowpass_hz if lowpass_hz else 0.0
+    return np.flatnonzero((t_s >= all_s[0] + period_s) & (t_s <= all_s[-1] - period_s))
+
+
 def _check_speeds(found: Identification) -> None:
     rows, places = _fitted_rows(found)
     shown = excitation(rows, places)
@@ -755,7 +788,7 @@ def _loops(
 
 
 def _loops_of(path: FrictionPath, kind: int, reach: float) -> list[tuple[Array, Array]]:
-    """Return position and friction about each reversal: upper (1), lower (-1), or of whole loops."""
+    """Return position and friction about each reversal: upper (1), lower (-1), or all (0)."""
     out: list[tuple[Array, Array]] = []
     for segment in range(int(path.segment[-1]) + 1):
         own = path.segment == segment
@@ -793,30 +826,31 @@ def _telling(prediction: Prediction) -> NDArray[np.bool_]:
     """Return the rows about the largest change: of the force, or of the speed."""
     t_s = prediction.t_s
     is_force = prediction.channel == "force_n"
-    signal_ = prediction.measured_force_n if is_force else prediction.measured_velocity_m_per_s
+    watched = prediction.measured_force_n if is_force else prediction.measured_velocity_m_per_s
     rows = max(len(t_s) // round(4 / ZOOM), 1)
-    change = np.abs(signal_[rows:] - signal_[:-rows])
+    change = np.abs(watched[rows:] - watched[:-rows])
     # A change from one segment to the next is none of the part.
     change[prediction.segment[rows:] != prediction.segment[:-rows]] = 0.0
     middle = int(np.argmax(change)) + rows // 2
     half = max(round(0.5 * ZOOM * len(t_s)), 5)
     first = min(max(middle - half, 0), max(len(t_s) - 2 * half, 0))
-    near = np.zeros(len(t_s), dtype=bool)
-    near[first : first + 2 * half] = True
-    return near & (prediction.segment == prediction.segment[middle])
+    near = prediction.segment == prediction.segment[middle]
+    near[:first] = near[first + 2 * half :] = False
+    return np.asarray(near, dtype=bool)
 
 
 def _trace(prediction: Prediction, values: Array, chosen: NDArray[np.bool_]) -> tuple[Array, Array]:
     """Return what is drawn of a channel: its extremes, with a gap between segments."""
     segments = range(int(prediction.segment[-1]) + 1)
     bins = max(BINS // len(segments), 50)
-    t_s, drawn = [], []
+    t_s: list[npt.ArrayLike] = []
+    drawn: list[npt.ArrayLike] = []
     for segment in segments:
         rows = np.flatnonzero(chosen & (prediction.segment == segment))
         kept = rows[_extremes(values[rows], bins)]
         t_s += [prediction.t_s[kept], [np.nan]]
         drawn += [values[kept], [np.nan]]
-    return np.concatenate(t_s)[:-1], np.concatenate(drawn)[:-1]
+    return np.hstack(t_s)[:-1], np.hstack(drawn)[:-1]
 
 
 def _extremes(values: Array, bins: int) -> Places:

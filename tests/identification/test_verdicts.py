@@ -1,0 +1,118 @@
+"""A log is told what it can not tell, and which experiment would."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from breakaway.identification import Identification, Verdict, identify
+from breakaway.identification.verdicts import stiction_peak
+from breakaway.logs import Log
+
+Array = npt.NDArray[np.float64]
+T_S = np.arange(2000) / 500.0
+
+
+def of(found: Identification) -> dict[str, Verdict]:
+    return {one.parameter: one for one in found.verdicts}
+
+
+def peak(found: Identification) -> str:
+    return stiction_peak({one.name: one for one in found.estimates}, found.verdicts)
+
+
+def log_of(velocity: Array, friction: Callable[[Array], Array], noise_m: float = 0.0) -> Log:
+    """Return a log of this velocity with this friction, of 0.05 N noise."""
+    rng = np.random.default_rng(0)
+    x = np.cumsum(velocity) / 500.0 + noise_m * rng.standard_normal(len(T_S))
+    force = friction(velocity) + 0.05 * rng.standard_normal(len(T_S))
+    return Log(t_s=T_S, position_m=x, force_n=force)
+
+
+@pytest.fixture(scope="module")
+def one_speed() -> Log:
+    """Give a log that goes to and fro at 20 mm/s, and reverses smoothly within 20 ms."""
+    velocity = 0.02 * np.tanh(np.sin(2 * np.pi * T_S) / 0.06)
+    return log_of(velocity, lambda v: 5.0 * np.tanh(v / 0.001))
+
+
+def test_one_speed_tells_neither_peak_nor_viscous_friction(one_speed: Log) -> None:
+    found = identify(one_speed, law="stribeck", starts=2)
+    told = of(found)
+    for name in ("stiction_ratio", "stribeck_velocity_m_per_s", "viscous_n_s_per_m"):
+        assert name not in found.values
+        assert not told[name].identifiable
+        assert "nearly one speed, 90 % of the sliding rows lie between" in told[name].because
+        assert told[name].remedy
+    assert "held at 1" in told["stiction_ratio"].because
+    assert "held at 0" in told["viscous_n_s_per_m"].because
+    assert "creeping to fast" in told["viscous_n_s_per_m"].remedy
+    assert "start from rest many times" in told["stiction_ratio"].remedy
+    assert told["coulomb_n"].identifiable
+    assert found["coulomb_n"].value == pytest.approx(5.0, rel=0.05)
+    assert peak(found).startswith("stiction peak: not identified (held at 1: nearly one speed")
+
+
+def test_free_fits_all_the_same(one_speed: Log) -> None:
+    found = identify(one_speed, law="coulomb", free=["viscous_n_s_per_m"], starts=1)
+    assert "viscous_n_s_per_m" in found.values
+    assert set(found.values) == {"coulomb_n", "viscous_n_s_per_m", "offset_n"}
+
+
+def test_fixed_needs_no_verdict_of_excitation(one_speed: Log) -> None:
+    found = identify(one_speed, law="coulomb", fixed={"viscous_n_s_per_m": 3.0}, starts=1)
+    assert found.fixed["viscous_n_s_per_m"] == 3.0
+    told = of(found)
+    assert "viscous_n_s_per_m" not in told or "held at 0" not in told["viscous_n_s_per_m"].because
+
+
+def test_one_direction_does_not_tell_an_offset() -> None:
+    velocity = 0.05 + 0.045 * np.sin(3 * T_S)
+    found = identify(log_of(velocity, lambda v: 5.0 + 40.0 * v), law="coulomb", starts=1)
+    told = of(found)["offset_n"]
+    assert not told.identifiable and "offset_n" not in found.values
+    assert "slides one way only, so an offset looks like friction" in told.because
+    assert told.remedy == "let the part slide both ways"
+    assert found["viscous_n_s_per_m"].value == pytest.approx(40.0, rel=0.05)
+
+
+def test_presliding_below_the_noise_holds_the_damper(rig: Any, lugre: dict[str, float]) -> None:
+    log = rig(**lugre).moved(1500, 1000.0, force_noise_n=0.1, position_noise_m=1e-3)
+    found = identify(log, law="elasto_plastic", lowpass_hz=20.0, starts=1)
+    told = of(found)
+    for name in ("damping_n_s_per_m", "elastic_share"):
+        assert not told[name].identifiable and name not in found.values
+        assert "presliding is" in told[name].because and "noise" in told[name].because
+    assert "ten times its resonance" in told["damping_n_s_per_m"].remedy
+    assert "up to breakaway" in told["elastic_share"].remedy
+
+
+def test_a_rich_log_tells_all(rich_fit: Identification) -> None:
+    assert all(one.identifiable for one in rich_fit.verdicts)
+    assert {one.parameter for one in rich_fit.verdicts} == set(rich_fit.values)
+    assert peak(rich_fit).startswith("stiction peak: seen; F_s / F_c = 1.")
+
+
+def test_no_peak_is_said_where_there_is_none(rig: Any, lugre: dict[str, float]) -> None:
+    truth = {**lugre, "stiction_ratio": 0.7}
+    found = identify(rig(**truth).moved(1500, 1000.0, force_noise_n=0.1), starts=2)
+    assert peak(found).startswith("stiction peak: none; F_s / F_c = 0.")
+
+
+def test_what_a_law_leaves_out_is_said(rich: Log) -> None:
+    told = of(identify(rich, law="coulomb", starts=1))
+    for name in ("stiction_ratio", "stiffness_n_per_m", "damping_n_s_per_m"):
+        assert told[name].because == "law 'coulomb' does not have it"
+        assert told[name].remedy.startswith("fit law")
+
+
+def test_an_estimate_that_is_not_told_says_so() -> None:
+    velocity = 0.05 * np.sin(3 * T_S) + 0.04 * np.sin(8 * T_S)
+    found = identify(log_of(velocity, lambda v: 5.0 * np.sign(v) + 20.0 * v), law="lugre", starts=2)
+    for one in found.estimates:
+        verdict = of(found)[one.name]
+        assert verdict.identifiable == one.identifiable
+        assert one.identifiable or (one.remark and verdict.remedy)
+    assert not found["stribeck_velocity_m_per_s"].identifiable
