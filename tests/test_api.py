@@ -183,7 +183,9 @@ def test_unknown_arguments_are_refused(name):
         return
     if name == "compare_laws":  # hands its settings on to identify
         with pytest.raises(TypeError, match="no_such_argument"):
-            bk.compare_laws(bk.Log(t_s=range(10)), held_out=(0, 1), no_such_argument=1)
+            bk.compare_laws(
+                bk.Log(t_s=range(10), force_n=range(10)), held_out=(0, 1), no_such_argument=1
+            )
         return
     with pytest.raises(TypeError, match="no_such_argument"):
         inspect.signature(FUNCTIONS[name]).bind_partial(no_such_argument=1)

@@ -110,7 +110,7 @@ def test_a_law_is_shown_with_intervals_and_what_is_left_open(
     out = tmp_path / "joint.toml"
     words = words_of(call("identify", rig_csv, *QUICK, "--out", out))
     for text in (
-        "rig.csv: coulomb, imposed motion (held: mass_kg = 0)",
+        "Coulomb, imposed motion (held: mass_kg = 0)",
         "95 % interval",
         "Not identified",
         "stiction_ratio (F_s / F_c)",

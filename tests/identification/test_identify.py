@@ -426,7 +426,7 @@ def columns(rows: int) -> st.SearchStrategy[tuple[Any, ...]]:
     )
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(
     data=st.integers(10, 200).flatmap(lambda rows: columns(rows)),
     step_s=st.sampled_from([1e-5, 1e-3, 1.0]),

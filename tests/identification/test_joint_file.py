@@ -262,8 +262,8 @@ def test_a_mass_comes_from_a_log_that_tells_it(looped: Log) -> None:
 
 def test_a_posterior_is_kept_as_draws(log: Log) -> None:
     pytest.importorskip("emcee")
-    cut = log.between(0.0, 1.0).resampled(rate_hz=200.0)
-    found = identify(cut, law="coulomb", fixed={"mass_kg": 5.0}, starts=1)
+    cut = log.between(0.0, 1.0).resampled(rate_hz=100.0)
+    found = identify(cut, law="coulomb", fixed={"mass_kg": 5.0}, steps_per_row=1, starts=1)
     joint = JointFile.from_identification(found, found.posterior(400))
     assert joint.draws is not None
     assert joint.draws.source == "posterior"

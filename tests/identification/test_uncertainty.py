@@ -12,7 +12,7 @@ from breakaway.identification import Identification, identify
 from breakaway.identification.uncertainty import correlation_window, covariance
 from breakaway.logs import Log
 
-T_S = np.arange(400) / 200.0
+T_S = np.arange(300) / 150.0
 X = 0.02 * np.sin(5 * T_S) + 0.01 * np.sin(13 * T_S + 1)
 V = 0.1 * np.cos(5 * T_S) + 0.13 * np.cos(13 * T_S + 1)
 ROUGH = Log(t_s=T_S, position_m=X, force_n=5.0 * np.sign(V) + 40.0 * V + 1.0)
@@ -92,7 +92,7 @@ def test_what_has_no_slope_has_no_known_error() -> None:
 
 def test_the_window_follows_the_correlation() -> None:
     windows = [correlation_window(noise(1, rho)) for rho in (0.0, 0.5, 0.9)]
-    assert windows[0] < windows[1] < windows[2] <= 40
+    assert windows[0] < windows[1] < windows[2] <= 30
     assert correlation_window(np.zeros(50)) == 0
 
 

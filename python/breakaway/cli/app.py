@@ -9,6 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from breakaway.cli.design import design
+from breakaway.cli.events import events
 from breakaway.cli.identify import identify
 from breakaway.cli.reproduce import reproduce
 from breakaway.cli.run import run
@@ -114,10 +115,17 @@ app.command(
 app.command(
     epilog=_examples(
         "breakaway identify motor.csv --out joint.toml",
-        "breakaway identify DATA_EMPS.mat --format emps --out joint.toml",
+        "breakaway identify motor.tdms --law lugre --asymmetric --out joint.toml --report",
+        "breakaway identify motor.mf4 --law compare --held-out 30:60",
         "breakaway identify fast.csv --lowpass-hz 400 --decimation 5 --json",
     )
 )(identify)
+app.command(
+    epilog=_examples(
+        "breakaway events part_1.csv part_2.csv part_3.csv --population",
+        "breakaway events seal.csv --use force_n=friction_n --json",
+    )
+)(events)
 app.command(epilog=_examples("breakaway presets", "breakaway presets --json"))(presets)
 app.command(
     epilog=_examples(

@@ -76,7 +76,7 @@ class FrictionPath:
     position_m: Array
     velocity_m_per_s: Array
     friction_n: Array
-    segment: Array
+    segment: NDArray[np.int64]
 
 
 def words_and_unit(name: str) -> tuple[str, str]:

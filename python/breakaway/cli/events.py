@@ -1,0 +1,112 @@
+"""``breakaway events``: breakaway found in measured logs."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from breakaway.cli.quantity import show
+from breakaway.cli.show import Sheet, busy, say, say_json
+
+if TYPE_CHECKING:
+    from breakaway.identification import BreakawayReport, Population
+
+
+def events(
+    logs: Annotated[list[Path], typer.Argument(help="Measured logs.", metavar="LOG...")],
+    use: Annotated[
+        list[str] | None,
+        typer.Option(help="Another channel of the log as a channel.", metavar="CHANNEL=OTHER"),
+    ] = None,
+    passed_share: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            max=1.0,
+            help="Share of the fall from the peak to sliding that must have been recorded, or the "
+            "peak counts as a lower bound.",
+        ),
+    ] = 0.5,
+    population: Annotated[
+        bool,
+        typer.Option(
+            "--population",
+            help="Fit how breakaway differs from log to log, each a part of its own.",
+        ),
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+) -> None:
+    """Find breakaway in logs: force, presliding, loading rate, and what is only a lower bound.
+
+    A log that begins moving is refused for breakaway, with the reason.
+    """
+    from breakaway.identification import find_breakaway_events, fit_population
+    from breakaway.logs import read_log
+
+    reports = []
+    with busy("looking for breakaway ..."):
+        for path in logs:
+            log = read_log(path)
+            for pair in use or []:
+                channel, sign, other = pair.partition("=")
+                if not (channel and sign and other):
+                    raise typer.BadParameter(f"--use {pair!r} is not of the form CHANNEL=OTHER")
+                log = log.using(**{channel: other})
+            reports.append(find_breakaway_events(log, passed_share=passed_share))
+        found = fit_population(reports, passed_share=passed_share) if population else None
+    if json:
+        say_json({"logs": [asdict(report) for report in reports], **_fits(found)})
+        return
+    say(_table(reports))
+    for report in reports:
+        for reason in report.refused:
+            say(f"- {report.name}: {reason}")
+        if report.offset_n is None:
+            say(f"- {report.name}: offset unknown, {report.offset_reason}")
+    if found is not None:
+        say(_population(found))
+        for note in found.notes:
+            say(f"- {note}")
+
+
+def _table(reports: list[BreakawayReport]) -> Sheet:
+    columns = ["log", "time", "breakaway", "", "sliding", "ratio", "presliding", "loading"]
+    shown = Sheet("Breakaway, less the offset", columns, numbers=columns[1:3] + columns[4:])
+    for report in reports:
+        for event in report.events:
+            rate = event.loading_rate_n_per_s
+            shown.add(
+                report.name,
+                f"{event.time_s:.3f} s",
+                show("force_n", event.breakaway_force_n),
+                "at least" if event.is_lower_bound else "",
+                show("force_n", event.sliding_force_n),
+                ""
+                if event.breakaway_over_sliding is None
+                else f"{event.breakaway_over_sliding:.2f}",
+                show("travel_m", event.presliding_displacement_m),
+                "" if rate is None else f"{rate:.3g} N/s",
+            )
+    return shown
+
+
+def _population(found: Population) -> Sheet:
+    shown = Sheet("Population", ["figure", "parameter", "value", "95 % interval"])
+    for name, fit in found.fits.items():
+        for parameter, value in fit.parameters.items():
+            low, high = fit.interval[parameter]
+            shown.add(name, parameter, f"{value:.4g}", f"{low:.4g} to {high:.4g}")
+    return shown
+
+
+def _fits(found: Population | None) -> dict[str, object]:
+    if found is None:
+        return {}
+    fits = {
+        name: {"parameters": dict(fit.parameters), "interval": dict(fit.interval)}
+        for name, fit in found.fits.items()
+    }
+    return {"population": fits, "notes": list(found.notes)}
