@@ -98,3 +98,8 @@ def measured(truth: Truth, case: int) -> bk.Log:
         position_m=np.round(x / truth.position_quantum_m) * truth.position_quantum_m,
         force_n=np.round(noisy / truth.force_quantum_n) * truth.force_quantum_n,
     )
+
+
+if __name__ == "__main__":
+    log = measured(drawn(0), 0)
+    print(f"{log.rows} rows of a rig with {drawn(0)}")

@@ -330,19 +330,27 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"motion": "fre"}, "motion: 'fre' is not one of imposed, free, closed_loop"),
     ({"method": "guess"}, "method: 'guess' is not one of least_squares, output_error"),
     ({"loss": "l1"}, "loss: 'l1' is not one of linear, soft_l1, huber, cauchy"),
-    ({"starts": 0}, "starts: 0 is not a whole number of at least 1"),
+    ({"starts": 0}, "starts: 0 is not a whole number from 1 to 1000000"),
     ({"starts": 2.0}, "starts: 2.0 is not a whole number"),
     ({"starts": True}, "starts: True is not a whole number"),
-    ({"steps_per_row": 0}, "steps_per_row: 0 is not a whole number of at least 1"),
+    ({"steps_per_row": 0}, "steps_per_row: 0 is not a whole number from 1 to 10000"),
     ({"fixed": {"stifness": 1.0}}, "'stifness' is not a parameter of this law"),
-    ({"fixed": {"coulomb_n": math.nan}}, r"fixed\.coulomb_n: nan is not a finite number"),
+    ({"fixed": {"coulomb_n": math.nan}}, r"fixed\.coulomb_n: nan is not within"),
     ({"free": ["mass"]}, "'mass' is not a parameter of this law"),
     ({"law": "coulomb", "fixed": {"stiction_ratio": 1.0}}, "'stiction_ratio' is not a parameter"),
     ({"repeats": [(0.5, 0.2)]}, "span 0.5 s to 0.2 s holds 0 rows .* at least 10"),
     ({"repeats": [(3.0, 4.0)]}, "span 3 s to 4 s holds 0 rows .* within 0 s to 1.499 s"),
     ({"repeats": [(0.0, 0.5), (0.4, 1.0)]}, "span 0.4 s to 1 s .* without overlap"),
     ({"repeats": [(1.0, 1.5), (0.0, 0.5)]}, "span 0 s to 0.5 s .* in order"),
-    ({"repeats": [(math.nan, 1.0)]}, "span nan s to 1 s holds 0 rows"),
+    ({"repeats": [(math.nan, 1.0)]}, r"repeats: .* is not a list of \(start_s, end_s\)"),
+    ({"repeats": [(0.1,)]}, r"repeats: .* is not a list of \(start_s, end_s\)"),
+    ({"fixed": {"coulomb_n": -5.0}}, r"fixed\.coulomb_n: -5.0 is not within"),
+    ({"fixed": {"mass_kg": -1.0}}, r"fixed\.mass_kg: -1.0 is not within 0"),
+    ({"fixed": {"mass_kg": "1"}}, r"fixed\.mass_kg: '1' is not a number"),
+    ({"fixed": {"coulomb_n": 5.0}, "free": ["coulomb_n"]}, "free: 'coulomb_n' is fixed too"),
+    ({"seed": -1}, "seed: -1 is not a whole number"),
+    ({"force_limit_n": -1.0}, "force_limit_n: -1.0 is not > 0"),
+    ({"origin_m": math.inf}, "origin_m: inf is not a finite position"),
     ({"lowpass_hz": 0.0}, "lowpass_hz is 0; .* must be > 0 and < 500 Hz"),
     ({"lowpass_hz": 500.0}, "lowpass_hz is 500; .* must be > 0 and < 500 Hz"),
     ({"motion": "closed_loop", "controller": CASCADE}, "needs the channel 'reference_m'"),
@@ -401,8 +409,12 @@ def test_refuses_to_predict_what_is_not_there(rich: Log) -> None:
     found = identify(rich, law="coulomb", starts=1)
     with pytest.raises(LogError, match="span 7 s to 8 s holds 0 rows"):
         found.predict(spans=[(7.0, 8.0)])
-    with pytest.raises(LogError, match="needs the channel 'reference_m'"):
+    with pytest.raises(LogError, match="motion: 'closed_loop' needs a mass"):
         found.predict(motion="closed_loop")
+    with pytest.raises(LogError, match="needs the channel 'reference_m'"):
+        identify(rich, law="coulomb", fixed={"mass_kg": 1.0}, starts=1).predict(
+            motion="closed_loop"
+        )
     with pytest.raises(LogError, match="motion: 'fre' is not one of"):
         found.predict(motion="fre")  # type: ignore[arg-type]
     with pytest.raises(LogError, match=r"'mass_kg' was not fitted; .* coulomb_n"):

@@ -120,7 +120,8 @@ def test_a_peak_of_one_row_is_drawn_however_long_the_log(simple):
     assert t_s[np.argmax(drawn)] == 123.456 and drawn.max() == 7.0
 
 
-def test_a_position_is_drawn_where_the_fit_compares_positions(found):
+def test_a_position_is_drawn_where_the_fit_compares_positions():
+    found = identify(synthetic(), law="coulomb", fixed={"mass_kg": 1.0}, starts=1)
     figure = plot_fit(found.predict(spans=[(3.0, 4.0)], motion="free"))
     assert figure.axes[0].get_ylabel().startswith("position (")
 

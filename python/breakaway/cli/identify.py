@@ -154,6 +154,16 @@ def identify(
     if out is not None:
         _check_target(log, out)
     page = _page(log, out) if report else None
+    given: dict[str, object] = {
+        "--fix": fix,
+        "--free": free,
+        "--repeat": repeat,
+        "--held-out": held_out,
+    }
+    given |= {"--posterior": posterior, "--controller": controller, "--asymmetric": asymmetric}
+    given |= {"--position-dependent": position_dependent}
+    given |= {"--motion": motion is not MotionChoice.IMPOSED}
+    _refuse_unused(law, given, decimation)
     measured = read_log(log, mapping, format.value if format else None)
     for pair in use or []:
         channel, other = _pair(pair, "--use", "CHANNEL=OTHER")
@@ -274,8 +284,27 @@ def _say_written(json: bool, *paths: Path | None) -> None:
                 say(f"wrote {path}")
 
 
+def _refuse_unused(law: LawChoice | None, given: dict[str, object], decimation: int | None) -> None:
+    """Refuse options that the way that was chosen does not use."""
+    from breakaway.errors import LogError
+
+    unused = [name for name, value in given.items() if value]
+    if law is None and unused:
+        raise LogError(f"{', '.join(unused)}: need --law; without it a regression is made")
+    if law is not None and decimation is not None:
+        raise LogError("--decimation: belongs to the regression; leave it or --law out")
+
+
 def _page(log: Path, out: Path | None) -> Path:
-    return Path(f"{log.stem}.html") if out is None else out.with_suffix(".html")
+    """Name the report's file; refuse to write over anything but another report."""
+    from breakaway.errors import OutputError
+
+    page = Path(f"{log.stem}.html") if out is None else out.with_suffix(".html")
+    if page == out:
+        raise OutputError(f"{out}: is where the report goes; give --out another suffix")
+    if page.is_file() and b"breakaway" not in page.read_bytes()[:4096]:
+        raise OutputError(f"{page}: is there and is no report; move it, or give another --out")
+    return page
 
 
 def _controller(path: Path | None) -> Any:  # noqa: ANN401 - a Cascade or a Pid

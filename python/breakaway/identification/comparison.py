@@ -84,6 +84,8 @@ def compare_laws(
     """
     for law in laws:
         check_law(law, asymmetric=False, position_dependent=False)
+    if not (len(held_out) == 2 and held_out[0] < held_out[1]):
+        raise LogError(f"held_out: {held_out!r} is not (start_s, end_s)")
     settings.setdefault("repeats", [(float(log.t_s[0]), held_out[0])])
     for start_s, end_s in settings["repeats"]:
         if start_s < held_out[1] and held_out[0] < end_s:
@@ -91,7 +93,13 @@ def compare_laws(
                 f"held_out: {held_out[0]:g} s to {held_out[1]:g} s overlaps the fitted span "
                 f"{start_s:g} s to {end_s:g} s; fit other rows than are predicted"
             )
-    fits = [identify(log, law=law, **settings) for law in laws]
+    if not laws or "law" in settings:
+        raise LogError("laws: name the laws that are compared, from simple to rich")
+    fits = []
+    for law in laws:
+        fits.append(identify(log, law=law, **settings))
+        if not fits[-1].complete:
+            break  # Ctrl-C: what is there is compared
     errors = [fit.predict(spans=[held_out]).rms_error for fit in fits]
     rows = min(fit.effective_rows for fit in fits)
     out: list[ComparedLaw] = []

@@ -13,7 +13,7 @@ from breakaway.errors import LogError
 from breakaway.identification.cascade import Cascade
 from breakaway.identification.guess import internal_guess, scales, stand_in
 from breakaway.identification.inertia_friction import identify_inertia_friction
-from breakaway.identification.laws import Law, LawName, Layout, check_law
+from breakaway.identification.laws import Law, LawName, Layout, Parameter, check_law
 from breakaway.identification.output_error import (
     LOSSES,
     Loss,
@@ -52,6 +52,8 @@ from breakaway.scenario.controller import Pid
 
 Method = Literal["least_squares", "output_error"]
 MOST_EVALUATIONS = 100
+MOST_PARAMETERS = 24
+MOST_STEPS = 10_000
 STEPS: Mapping[str, int] = {"imposed": 4, "free": 1, "closed_loop": 1}
 
 
@@ -175,6 +177,11 @@ class Identification:
         if motion is not None:
             _known("motion", motion, MOTIONS)
             settings = RunSettings(**{**vars(settings), "motion": motion})
+            if motion != "imposed" and self.fixed.get("mass_kg") == 0.0:
+                raise LogError(
+                    f"motion: {motion!r} needs a mass, and the fit held it at 0; identify with "
+                    "fixed={'mass_kg': ...}"
+                )
         rows = measured_rows(self.log if log is None else log, settings)
         numbers = self.internals.problem.layout.numbers(self.internals.best)
         return predict_rows(rows, spans, self.law, settings, numbers)
@@ -219,8 +226,13 @@ class Identification:
             emcee is not installed; it is the extra ``posterior``.
 
         """
+        _at_least_one("samples", samples)
+        _check_seed(seed)
         inner = self.internals
-        spread = np.sqrt(np.minimum(np.diag(inner.covariance.matrix), 1.0))
+        low, high = inner.bounds
+        error = np.sqrt(np.diag(inner.covariance.matrix))
+        spread = np.where(np.isfinite(error), np.minimum(error, 0.1 * (high - low)), 0.0)
+        spread = np.maximum(spread, 1e-6 * (high - low))
         return posterior(
             inner.problem,
             inner.best,
@@ -248,13 +260,18 @@ class Identification:
         draws below 0 of those that can not be are mirrored there.
 
         """
+        _at_least_one("samples", samples)
+        _check_seed(seed)
         inner = self.internals
         told = [i for i, one in enumerate(self.estimates) if one.identifiable]
         free = inner.problem.layout.free
         at = np.tile(inner.best, (samples, 1))
         rng = np.random.default_rng(seed)
         matrix = inner.covariance.matrix[np.ix_(told, told)]
-        at[:, told] += rng.multivariate_normal(np.zeros(len(told)), matrix, samples)
+        center = np.zeros(len(told))
+        at[:, told] += rng.multivariate_normal(
+            center, matrix, samples, check_valid="ignore", method="svd"
+        )
         drawn = {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
         return {
             one.name: np.abs(drawn[one.name]) if one.may_vanish else drawn[one.name] for one in free
@@ -392,7 +409,12 @@ def identify(
     _known("loss", loss, LOSSES)
     _at_least_one("starts", starts)
     steps = STEPS[motion] if steps_per_row is None else steps_per_row
-    _at_least_one("steps_per_row", steps)
+    _at_least_one("steps_per_row", steps, MOST_STEPS)
+    _check_seed(seed)
+    if force_limit_n is not None and not 0.0 < force_limit_n < math.inf:
+        raise LogError(f"force_limit_n: {force_limit_n!r} is not > 0 and finite")
+    if origin_m is not None and not math.isfinite(origin_m):
+        raise LogError(f"origin_m: {origin_m!r} is not a finite position")
     settings = RunSettings(
         motion=motion,
         controller=controller,
@@ -403,15 +425,21 @@ def identify(
         origin_m=_origin(log, position_dependent, origin_m),
     )
     rows = measured_rows(log, settings)
-    spans, segments, owners = segments_of(rows, repeats)
+    spans, segments, owners = segments_of(rows, _spans(repeats))
     held = dict(fixed or {})
-    if motion == "imposed" and method == "output_error":
+    if motion == "imposed" and method == "output_error" and "mass_kg" not in free:
         held.setdefault("mass_kg", 0.0)
-    places = np.concatenate([np.arange(first, end) for first, end in segments])
-    sizes = scales(rows, places, settings, held.get("mass_kg"))
     parameters = chosen.parameters(len(spans))
     names = [one.name for one in parameters]
-    _check_fixed({**held, **dict.fromkeys(free, 0.0)}, names)
+    _check_fixed(held, parameters, motion)
+    _check_free(free, fixed or {}, names)
+    if len(parameters) > MOST_PARAMETERS:
+        raise LogError(
+            f"repeats: {len(spans)} with law {law!r} make {len(parameters)} parameters, at most "
+            f"{MOST_PARAMETERS} can be fitted; give fewer repeats"
+        )
+    places = np.concatenate([np.arange(first, end) for first, end in segments])
+    sizes = scales(rows, places, settings, held.get("mass_kg"))
     open_names = [name for name in names if name not in held and name not in free]
     back = unexcited(open_names, excitation(rows, places), settings)
     held_back = {name: value for name, (value, _) in back.items()}
@@ -424,7 +452,9 @@ def identify(
     problem = Problem(record, layout, channel, measured, scale)
     guess, spread, bounds = internal_guess(layout, sizes, settings)
     if method == "least_squares":
-        best = Minimum(_regressed(log, layout, chosen, settings, repeats), 0.0, 1, converged=True)
+        best = Minimum(
+            _regressed(log, layout, chosen, settings, repeats, held), 0.0, 1, converged=True
+        )
         complete, starts, agreeing = True, 1, 1
     else:
         drawn = screened_starts(problem, guess, spread, bounds, starts, seed)
@@ -439,15 +469,21 @@ def identify(
 
 
 def _regressed(
-    log: Log, layout: Layout, law: Law, settings: RunSettings, repeats: Sequence[Span]
+    log: Log,
+    layout: Layout,
+    law: Law,
+    settings: RunSettings,
+    repeats: Sequence[Span],
+    fixed: Mapping[str, float],
 ) -> Array:
     """Fit the linear law by regression; return the internal parameters."""
-    if law.name != "coulomb" or law.position_dependent or settings.motion != "imposed" or repeats:
+    given = law.position_dependent or settings.motion != "imposed" or repeats or fixed
+    if law.name != "coulomb" or given:
         raise LogError(
-            "method: 'least_squares' fits law 'coulomb' to imposed motion, the whole log at once; "
-            "take method 'output_error', or cut the log with `between`"
+            "method: 'least_squares' fits law 'coulomb' to imposed motion, the whole log at once, "
+            "with nothing fixed; take method 'output_error', or cut the log with `between`"
         )
-    fit = identify_inertia_friction(log)
+    fit = identify_inertia_friction(log, lowpass_hz=settings.lowpass_hz or 100.0)
     values = fit.asymmetric if law.asymmetric else fit.symmetric
     found = [getattr(values, one.name) for one in layout.free]
     for one, value in zip(layout.free, found, strict=True):
@@ -471,17 +507,52 @@ def _known(name: str, value: str, allowed: Sequence[str]) -> None:
         raise LogError(f"{name}: {value!r} is not one of {', '.join(allowed)}")
 
 
-def _at_least_one(name: str, value: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-        raise LogError(f"{name}: {value!r} is not a whole number of at least 1")
+def _at_least_one(name: str, value: int, most: int = 1_000_000) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+        raise LogError(f"{name}: {value!r} is not a whole number from 1 to {most}")
 
 
-def _check_fixed(fixed: Mapping[str, float], names: Sequence[str]) -> None:
+def _check_fixed(
+    fixed: Mapping[str, float], parameters: Sequence[Parameter], motion: MotionKind
+) -> None:
+    known = {one.name: one for one in parameters}
     for name, value in fixed.items():
+        if name not in known:
+            raise LogError(
+                f"fixed: {name!r} is not a parameter of this law; those are {', '.join(known)}"
+            )
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise LogError(f"fixed.{name}: {value!r} is not a number")
+        low, high = known[name].low, known[name].high
+        if name == "mass_kg" and motion == "imposed":
+            low = 0.0
+        if not low <= value <= high:
+            raise LogError(f"fixed.{name}: {value!r} is not within {low:g} to {high:g}")
+
+
+def _check_free(free: Sequence[str], fixed: Mapping[str, float], names: Sequence[str]) -> None:
+    for name in free:
         if name not in names:
-            raise LogError(f"{name!r} is not a parameter of this law; those are {', '.join(names)}")
-        if not math.isfinite(value):
-            raise LogError(f"fixed.{name}: {value!r} is not a finite number")
+            raise LogError(
+                f"free: {name!r} is not a parameter of this law; those are {', '.join(names)}"
+            )
+        if name in fixed:
+            raise LogError(f"free: {name!r} is fixed too; name it in one of them")
+
+
+def _spans(repeats: Sequence[Span]) -> list[Span]:
+    try:
+        spans = [(float(start), float(end)) for start, end in repeats]
+    except (TypeError, ValueError):
+        spans = [(math.nan, math.nan)]
+    if not all(math.isfinite(end) for span in spans for end in span):
+        raise LogError(f"repeats: {repeats!r} is not a list of (start_s, end_s), in seconds")
+    return spans
+
+
+def _check_seed(seed: int) -> None:
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise LogError(f"seed: {seed!r} is not a whole number of at least 0")
 
 
 @dataclass(frozen=True, eq=False)
@@ -569,7 +640,10 @@ class _Found:
             if parameter.may_vanish:
                 ends = (max(ends[0], 0.0), ends[1])
                 if not error < NOT_TOLD_FROM_0 * value:
-                    remark = f"not told from 0, at most {ends[1]:.3g} in its unit"
+                    about = f"known to {100 * error / value:.0f} % only" if ends[0] > 0.0 else ""
+                    remark = about or f"not told from 0, at most {ends[1]:.3g} in its unit"
+            elif not math.isfinite(error):
+                remark = "can not be told apart from others"
             elif at_end:
                 remark = "at the end of its range"
             elif parameter.positive and not error < NOT_IDENTIFIABLE:

@@ -240,6 +240,10 @@ class JointFile(Model):
         """
         told = {one.name for one in found.estimates if one.identifiable}
         coulomb = "coulomb_positive_n" if found.law.asymmetric else "coulomb_n"
+        if coulomb in found.fixed:
+            raise LogError(
+                f"{found.log.name}: {coulomb} was fixed, not identified; there is no joint to write"
+            )
         if coulomb not in told:
             raise LogError(
                 f"{found.log.name}: {coulomb} is not identifiable from this log, so there is no "
@@ -256,7 +260,7 @@ class JointFile(Model):
             provenance=_provenance(found),
             part=Part(**changes["part"]),
             joint=Joint(**changes["joint"]),
-            rig=Rig(offset_n=found.values.get("offset_n", 0.0)),
+            rig=Rig(offset_n=_last_offset(found.values)),
             standard_error={
                 one.name: one.standard_error for one in found.estimates if one.identifiable
             },
@@ -360,6 +364,11 @@ def _fields_of(values: Mapping[str, Any], told: set[str]) -> dict[str, Any]:
     if "mass_kg" in told:
         fields["part.mass_kg"] = values["mass_kg"]
     return fields
+
+
+def _last_offset(values: Mapping[str, float]) -> float:
+    offsets = [value for name, value in values.items() if name.startswith("offset_")]
+    return offsets[-1] if offsets else 0.0
 
 
 def _sided(name: str) -> str:

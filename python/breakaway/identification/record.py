@@ -124,6 +124,11 @@ def segments_of(
             if next_cut - cut >= MINIMUM_SEGMENT:
                 segments.append((cut, next_cut))
                 owners.append(number)
+        if not owners or owners[-1] != number:
+            raise LogError(
+                f"{name}: the span {start_s:g} s to {end_s:g} s has under {MINIMUM_SEGMENT} rows "
+                "between any two gaps, so nothing can be run; log without gaps"
+            )
         end_before = end
     return spans, segments, owners
 

@@ -26,6 +26,9 @@ NOT_TOLD_FROM_0 = 0.25
 """Standard error, as a share of its value, from which a parameter that may be 0 counts so too."""
 
 
+SINGULAR = 1e-7
+"""Singular value, relative to the largest, below which parameters can not be told apart."""
+
 BURNED = 500
 """Steps of the posterior's walkers that are left out, while they forget where they began."""
 
@@ -78,12 +81,14 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
     55(3), 1987), which holds for unequal and correlated residuals. The Bartlett weights are
     those of sums over overlapping windows of L + 1 rows, which is how S is computed.
 
-    Parameters that the record does not tell (a zero slope) get an infinite variance.
+    Parameters that the record does not tell, for their slope is zero or that of others, get an
+    infinite variance.
     """
     rows, count = slopes.shape
-    size = np.linalg.norm(slopes, axis=0)
-    told = size > 0.0
-    matrix = np.full((count, count), 0.0)
+    with np.errstate(over="ignore", under="ignore"):
+        size = np.linalg.norm(slopes, axis=0)
+    told = (size > 0.0) & np.isfinite(size)
+    matrix = np.zeros((count, count))
     matrix[~told, ~told] = np.inf
     window = correlation_window(residual)
     if not told.any():
@@ -91,12 +96,12 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
     scaled = slopes[:, told] / size[told]
     _, singular, right = np.linalg.svd(scaled, full_matrices=False)
     condition = float(singular[0] / max(singular[-1], 1e-300))
-    inverse = (right.T / np.maximum(singular, 1e-9 * singular[0]) ** 2) @ right
+    kept = singular > SINGULAR * singular[0]
+    inverse = (right[kept].T / singular[kept] ** 2) @ right[kept]
+    lost = np.flatnonzero(told)[np.any(np.abs(right[~kept]) > 0.1, axis=0)]
     score = scaled * residual[:, None]
-    padded = np.vstack(
-        [np.zeros((window + 1, score.shape[1])), score, np.zeros((window, score.shape[1]))]
-    )
-    running = np.cumsum(padded, axis=0)
+    ahead, behind = np.zeros((window + 1, score.shape[1])), np.zeros((window, score.shape[1]))
+    running = np.cumsum(np.vstack([ahead, score, behind]), axis=0)
     sums = running[window + 1 :] - running[: -window - 1]
     freedom = rows / max(rows - count, 1)
     influence = inverse @ sums.T * np.sqrt(freedom / (window + 1))
@@ -107,6 +112,8 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
     weight = min(1.0, len(singular) / max(inflation, 1e-300))
     places = np.flatnonzero(told)
     matrix[np.ix_(places, places)] = sandwich / np.outer(size[told], size[told])
+    matrix[lost, :] = matrix[:, lost] = 0.0
+    matrix[lost, lost] = np.inf
     return Covariance(matrix, window, weight, condition)
 
 
@@ -150,9 +157,12 @@ def profile(
     """
     best = problem.residual(internal)
     variance = float(best @ best) / max(len(best) - len(internal), 1)
-    reach = min(max(4.0 * error, 1e-6), 6.0) if np.isfinite(error) else 6.0
-    others = np.array([i for i in range(len(internal)) if i != place])
     low, high = bounds
+    parameter = problem.layout.free[place]
+    reach = min(max(4.0 * error, 1e-6), 6.0) if parameter.positive else 4.0 * error
+    if not np.isfinite(reach):
+        reach = 6.0 if parameter.positive else 0.5 * (high[place] - low[place])
+    others = np.array([i for i in range(len(internal)) if i != place])
     found: dict[float, float] = {internal[place]: 0.0}
     for side in (-1.0, 1.0):
         at = internal.copy()
@@ -166,10 +176,11 @@ def profile(
             if found[target] > 2.0 * _limit():
                 break
     order = sorted(found)
-    parameter = problem.layout.free[place]
     values = parameter.external(np.array(order))
     deviance = np.array([found[one] for one in order])
-    ends = _crossings(values, deviance, 0.0 if parameter.positive else -np.inf)
+    ends = _crossings(
+        values, deviance, 0.0 if parameter.positive or parameter.may_vanish else -np.inf
+    )
     return Profile(parameter.name, values, deviance, *ends)
 
 
@@ -283,7 +294,7 @@ def posterior(
     count = len(internal)
     walkers = max(64, 2 * (count + 1) // 2 * 2)
     rng = np.random.default_rng(seed)
-    around = internal + np.minimum(spread, 1.0) * rng.standard_normal((walkers, count))
+    around = internal + spread * rng.standard_normal((walkers, count))
     around = np.clip(around, low + 1e-6 * (high - low), high - 1e-6 * (high - low))
     sampler = emcee.EnsembleSampler(walkers, count, log_probability, vectorize=True)
     sampler.random_state = np.random.RandomState(seed % 2**32).get_state()

@@ -108,16 +108,22 @@ def _rests(moving: Array) -> int:
 
 
 def _presliding(x: Array, v: Array, force: Array, top: float) -> float:
-    """Return the median travel after a reversal until the force has changed by 80 %."""
+    """Return the median travel from a turn until the force has changed by 80 % of both levels."""
     level = float(np.median(np.abs(force[np.abs(v) > 0.5 * top])))
-    sign = np.where(v > 0.02 * top, 1, np.where(v < -0.02 * top, -1, 0))
-    turns = np.flatnonzero((sign[1:] != 0) & (sign[:-1] != sign[1:]))
+    moving = np.flatnonzero(np.abs(v) > 0.02 * top)
+    turns = np.flatnonzero(np.diff(np.sign(v[moving])))
+    if turns.size == 0:
+        return 0.0
     travels = []
-    for turn in turns:
-        ahead = slice(turn, min(turn + 2000, len(x)))
-        changed = np.abs(force[ahead] - force[turn]) > 0.8 * level
+    lasts = [*moving[turns[1:]], len(x) - 1]
+    for before, after, last in zip(moving[turns], moving[turns + 1], lasts, strict=True):
+        ahead = slice(before, last + 1)
+        changed = np.abs(force[ahead] - force[before]) > 0.8 * 2.0 * level
         if changed.any():
-            travels.append(abs(float(x[turn + int(np.argmax(changed))] - x[turn])))
+            there = before + int(np.argmax(changed))
+            turn = x[before : after + 1]
+            far = turn.max() if v[before] > 0.0 else turn.min()
+            travels.append(abs(float(x[there]) - float(far)))
     return float(np.median(travels)) if travels else 0.0
 
 

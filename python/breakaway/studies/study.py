@@ -388,9 +388,6 @@ class ComparedController(StudyModel):
     scenario: Annotated[Scenario, BeforeValidator(_loaded)] | None = None
     """A scenario whose controller and actuator are taken; gains that it leaves open are designed
     for the study's scenario. Left out: those of the study's scenario."""
-    joint: Annotated[JointFile, BeforeValidator(_loaded_joint)] | None = None
-    """A joint that was identified from a log: the path of its file (from the study's own folder).
-    Its values are laid over the scenario, and its draws join what differs from part to part."""
     changes: dict[str, Any] = Field(default_factory=dict)
     """What is changed in the controller, the actuator, the reference or the timing."""
 
