@@ -13,9 +13,10 @@ from scipy.stats import chi2
 
 from breakaway.errors import LogError
 from breakaway.identification.comparison import compare_laws
-from breakaway.identification.identify import Identification, identify
+from breakaway.identification.identify import identify
 from breakaway.identification.laws import SHARED, Law
 from breakaway.identification.record import RunSettings, core_record, measured_rows
+from breakaway.identification.result import Identification
 from breakaway.logs import read_log
 from breakaway.logs.log import Log
 from breakaway.plots.identification import (

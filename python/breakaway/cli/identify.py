@@ -229,7 +229,7 @@ def _fit(
     from breakaway.errors import LogError
     from breakaway.identification import JointFile, compare_laws
     from breakaway.identification import identify as fit_law
-    from breakaway.identification.identify import as_dict
+    from breakaway.identification.result import as_dict
 
     compared: tuple[ComparedLaw, ...] = ()
     if law is LawChoice.COMPARE:

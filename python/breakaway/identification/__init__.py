@@ -10,7 +10,7 @@ from breakaway.identification.events import (
     BreakawayReport,
     find_breakaway_events,
 )
-from breakaway.identification.identify import Estimate, Identification, identify
+from breakaway.identification.identify import identify
 from breakaway.identification.inertia_friction import (
     NOT_IDENTIFIED,
     AsymmetricFit,
@@ -22,6 +22,7 @@ from breakaway.identification.joint_file import JointFile
 from breakaway.identification.laws import LAWS
 from breakaway.identification.population import Population, fit_population
 from breakaway.identification.prediction import Prediction
+from breakaway.identification.result import Estimate, Identification
 from breakaway.identification.sliding import Reversal, SlidingLevel
 from breakaway.identification.uncertainty import Posterior, Profile
 from breakaway.identification.verdicts import Excitation, Verdict

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from breakaway.errors import LogError
-from breakaway.identification.identify import Identification, identify
+from breakaway.identification.identify import identify
 from breakaway.identification.laws import LAWS, LawName, check_law
 from breakaway.identification.record import Span
+from breakaway.identification.result import Identification
 from breakaway.logs.log import Log
 
 PAYS_AIC = 2.0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from breakaway.errors import LogError
 from breakaway.identification.cascade import Cascade
 from breakaway.identification.guess import internal_guess, scales, stand_in
 from breakaway.identification.inertia_friction import identify_inertia_friction
-from breakaway.identification.laws import Law, LawName, Layout, Parameter, check_law
+from breakaway.identification.laws import Law, LawName, Layout, check_law
 from breakaway.identification.output_error import (
     LOSSES,
     Loss,
@@ -35,16 +35,23 @@ from breakaway.identification.record import (
     predicted_channel,
     segments_of,
 )
+from breakaway.identification.result import Estimate, Identification, Internals
+from breakaway.identification.settings import (
+    at_least_one,
+    check_count,
+    check_fixed,
+    check_free,
+    check_run,
+    check_seed,
+    checked_spans,
+    known,
+)
 from breakaway.identification.uncertainty import (
     NOT_IDENTIFIABLE,
     NOT_TOLD_FROM_0,
     Covariance,
-    Posterior,
-    Profile,
     covariance,
     interval,
-    posterior,
-    profile,
 )
 from breakaway.identification.verdicts import Verdict, excitation, unexcited, verdicts
 from breakaway.logs.log import Array, Log
@@ -52,246 +59,7 @@ from breakaway.scenario.controller import Pid
 
 Method = Literal["least_squares", "output_error"]
 MOST_EVALUATIONS = 100
-MOST_PARAMETERS = 24
-MOST_STEPS = 10_000
 STEPS: Mapping[str, int] = {"imposed": 4, "free": 1, "closed_loop": 1}
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """One parameter: its value, standard error and 95 % interval.
-
-    ``standard_error`` is that of the value; the interval of a positive parameter is that of its
-    logarithm, so it is not symmetric. ``identifiable`` is whether the log tells it.
-    """
-
-    name: str
-    value: float
-    standard_error: float
-    low: float
-    high: float
-    identifiable: bool
-    remark: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Identification:
-    """A joint as one log tells it.
-
-    ``estimates`` are the parameters that were fitted, ``fixed`` those that were held.
-    ``converged`` is whether the best start was done, ``complete`` whether no Ctrl-C cut the fit
-    short: what is given then is the best so far.
-    """
-
-    log: Log
-    law: Law
-    settings: RunSettings
-    spans: tuple[Span, ...]
-    estimates: tuple[Estimate, ...]
-    fixed: Mapping[str, float]
-    rms_error: float
-    relative_error_percent: float
-    residual_autocorrelation: float
-    effective_rows: float
-    condition_number: float
-    verdicts: tuple[Verdict, ...]
-    notes: tuple[str, ...]
-    converged: bool
-    complete: bool
-    starts: int
-    starts_agreeing: int
-    seed: int
-    loss: str
-    fit: Prediction
-    internals: Internals = field(repr=False)
-
-    @property
-    def channel(self) -> str:
-        """The channel whose error was made small."""
-        return self.internals.problem.channel
-
-    @property
-    def values(self) -> dict[str, float]:
-        """The fitted parameters by name."""
-        return {one.name: one.value for one in self.estimates}
-
-    @property
-    def aic(self) -> float:
-        """Akaike's information criterion, for the effective number of rows."""
-        return self.aic_for(self.effective_rows)
-
-    @property
-    def bic(self) -> float:
-        """Bayes' information criterion, for the effective number of rows."""
-        rows = self.effective_rows
-        return self.aic_for(rows) + (math.log(max(rows, 1.0)) - 2.0) * (len(self.estimates) + 1)
-
-    def aic_for(self, rows: float) -> float:
-        """Return n ln(s²) + 2 (p + 1), with n independent rows and s the RMS error.
-
-        Parameters
-        ----------
-        rows : float
-            n; laws that are compared have to be given the same.
-
-        """
-        deviance = rows * math.log(max(self.rms_error, 1e-300) ** 2)
-        return deviance + 2.0 * (len(self.estimates) + 1)
-
-    def __getitem__(self, name: str) -> Estimate:
-        for one in self.estimates:
-            if one.name == name:
-                return one
-        raise KeyError(name)
-
-    def predict(
-        self,
-        log: Log | None = None,
-        *,
-        spans: Sequence[Span] = (),
-        motion: MotionKind | None = None,
-    ) -> Prediction:
-        """Simulate rows with the identified parameters and compare them with what was measured.
-
-        Parameters
-        ----------
-        log : Log, optional
-            Another log of the same rig; by default the log that was identified.
-        spans : sequence of (start_s, end_s), optional
-            Spans that are simulated, each from its first measured row; by default the whole log.
-        motion : {'imposed', 'free', 'closed_loop'}, optional
-            By default as in the fit.
-
-        Returns
-        -------
-        Prediction
-            Where the fit had an offset for each repeat, the last repeat's is used.
-
-        Raises
-        ------
-        LogError
-            The log lacks a channel that the motion needs, or a span is empty.
-
-        """
-        settings = self.settings
-        if motion is not None:
-            _known("motion", motion, MOTIONS)
-            settings = RunSettings(**{**vars(settings), "motion": motion})
-            if motion != "imposed" and self.fixed.get("mass_kg") == 0.0:
-                raise LogError(
-                    f"motion: {motion!r} needs a mass, and the fit held it at 0; identify with "
-                    "fixed={'mass_kg': ...}"
-                )
-        rows = measured_rows(self.log if log is None else log, settings)
-        numbers = self.internals.problem.layout.numbers(self.internals.best)
-        return predict_rows(rows, spans, self.law, settings, numbers)
-
-    def profile(self, name: str) -> Profile:
-        """Compute the profile likelihood of a parameter.
-
-        Parameters
-        ----------
-        name : str
-            One of the fitted parameters.
-
-        Raises
-        ------
-        LogError
-            The parameter was not fitted.
-
-        """
-        inner = self.internals
-        place = self._place(name)
-        error = math.sqrt(inner.covariance.matrix[place, place])
-        weight = inner.covariance.weight
-        return profile(inner.problem, inner.best, inner.bounds, place, error, weight)
-
-    def posterior(
-        self, samples: int = 10_000, *, seed: int = 0, progress: Progress | None = None
-    ) -> Posterior:
-        """Draw parameters from their posterior, given the log.
-
-        Parameters
-        ----------
-        samples : int
-            Draws to keep.
-        seed : int
-            The same seed gives the same draws.
-        progress : callable, optional
-            Called with steps done and steps in all.
-
-        Raises
-        ------
-        LogError
-            emcee is not installed; it is the extra ``posterior``.
-
-        """
-        _at_least_one("samples", samples)
-        _check_seed(seed)
-        inner = self.internals
-        low, high = inner.bounds
-        error = np.sqrt(np.diag(inner.covariance.matrix))
-        spread = np.where(np.isfinite(error), np.minimum(error, 0.1 * (high - low)), 0.0)
-        spread = np.maximum(spread, 1e-6 * (high - low))
-        return posterior(
-            inner.problem,
-            inner.best,
-            spread,
-            inner.bounds,
-            inner.covariance.weight,
-            samples,
-            seed,
-            progress,
-        )
-
-    def draws(self, samples: int, *, seed: int = 0) -> dict[str, Array]:
-        """Draw parameters from the normal distribution that the covariance gives.
-
-        Parameters
-        ----------
-        samples : int
-            How many.
-        seed : int
-            The same seed gives the same draws.
-
-        Notes
-        -----
-        Quicker than `posterior`, and rougher: parameters that are not identifiable are held, and
-        draws below 0 of those that can not be are mirrored there.
-
-        """
-        _at_least_one("samples", samples)
-        _check_seed(seed)
-        inner = self.internals
-        told = [i for i, one in enumerate(self.estimates) if one.identifiable]
-        free = inner.problem.layout.free
-        at = np.tile(inner.best, (samples, 1))
-        rng = np.random.default_rng(seed)
-        matrix = inner.covariance.matrix[np.ix_(told, told)]
-        center = np.zeros(len(told))
-        at[:, told] += rng.multivariate_normal(
-            center, matrix, samples, check_valid="ignore", method="svd"
-        )
-        drawn = {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
-        return {
-            one.name: np.abs(drawn[one.name]) if one.may_vanish else drawn[one.name] for one in free
-        }
-
-    def _place(self, name: str) -> int:
-        names = [one.name for one in self.estimates]
-        if name not in names:
-            raise LogError(f"parameter {name!r} was not fitted; those are {', '.join(names)}")
-        return names.index(name)
-
-
-@dataclass(frozen=True, eq=False)
-class Internals:
-    """What a finished fit keeps for profiles, posteriors and predictions."""
-
-    problem: Problem
-    best: Array
-    bounds: tuple[Array, Array]
-    covariance: Covariance
 
 
 def identify(
@@ -404,17 +172,13 @@ def identify(
 
     """
     chosen = check_law(law, asymmetric, position_dependent)
-    _known("method", method, get_args(Method))
-    _known("motion", motion, MOTIONS)
-    _known("loss", loss, LOSSES)
-    _at_least_one("starts", starts)
+    known("method", method, get_args(Method))
+    known("motion", motion, MOTIONS)
+    known("loss", loss, LOSSES)
+    at_least_one("starts", starts)
+    check_seed(seed)
     steps = STEPS[motion] if steps_per_row is None else steps_per_row
-    _at_least_one("steps_per_row", steps, MOST_STEPS)
-    _check_seed(seed)
-    if force_limit_n is not None and not 0.0 < force_limit_n < math.inf:
-        raise LogError(f"force_limit_n: {force_limit_n!r} is not > 0 and finite")
-    if origin_m is not None and not math.isfinite(origin_m):
-        raise LogError(f"origin_m: {origin_m!r} is not a finite position")
+    check_run(steps, force_limit_n, origin_m)
     settings = RunSettings(
         motion=motion,
         controller=controller,
@@ -425,19 +189,15 @@ def identify(
         origin_m=_origin(log, position_dependent, origin_m),
     )
     rows = measured_rows(log, settings)
-    spans, segments, owners = segments_of(rows, _spans(repeats))
+    spans, segments, owners = segments_of(rows, checked_spans(repeats))
     held = dict(fixed or {})
     if motion == "imposed" and method == "output_error" and "mass_kg" not in free:
         held.setdefault("mass_kg", 0.0)
     parameters = chosen.parameters(len(spans))
     names = [one.name for one in parameters]
-    _check_fixed(held, parameters, motion)
-    _check_free(free, fixed or {}, names)
-    if len(parameters) > MOST_PARAMETERS:
-        raise LogError(
-            f"repeats: {len(spans)} with law {law!r} make {len(parameters)} parameters, at most "
-            f"{MOST_PARAMETERS} can be fitted; give fewer repeats"
-        )
+    check_fixed(held, parameters, motion)
+    check_free(free, fixed or {}, names)
+    check_count(law, parameters, len(spans))
     places = np.concatenate([np.arange(first, end) for first, end in segments])
     sizes = scales(rows, places, settings, held.get("mass_kg"))
     open_names = [name for name in names if name not in held and name not in free]
@@ -500,59 +260,6 @@ def _origin(log: Log, position_dependent: bool, origin_m: float | None) -> float
         return 0.0
     x = log.position_m
     return 0.5 * float(x.min() + x.max()) if origin_m is None else origin_m
-
-
-def _known(name: str, value: str, allowed: Sequence[str]) -> None:
-    if value not in allowed:
-        raise LogError(f"{name}: {value!r} is not one of {', '.join(allowed)}")
-
-
-def _at_least_one(name: str, value: int, most: int = 1_000_000) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
-        raise LogError(f"{name}: {value!r} is not a whole number from 1 to {most}")
-
-
-def _check_fixed(
-    fixed: Mapping[str, float], parameters: Sequence[Parameter], motion: MotionKind
-) -> None:
-    known = {one.name: one for one in parameters}
-    for name, value in fixed.items():
-        if name not in known:
-            raise LogError(
-                f"fixed: {name!r} is not a parameter of this law; those are {', '.join(known)}"
-            )
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise LogError(f"fixed.{name}: {value!r} is not a number")
-        low, high = known[name].low, known[name].high
-        if name == "mass_kg" and motion == "imposed":
-            low = 0.0
-        if not low <= value <= high:
-            raise LogError(f"fixed.{name}: {value!r} is not within {low:g} to {high:g}")
-
-
-def _check_free(free: Sequence[str], fixed: Mapping[str, float], names: Sequence[str]) -> None:
-    for name in free:
-        if name not in names:
-            raise LogError(
-                f"free: {name!r} is not a parameter of this law; those are {', '.join(names)}"
-            )
-        if name in fixed:
-            raise LogError(f"free: {name!r} is fixed too; name it in one of them")
-
-
-def _spans(repeats: Sequence[Span]) -> list[Span]:
-    try:
-        spans = [(float(start), float(end)) for start, end in repeats]
-    except (TypeError, ValueError):
-        spans = [(math.nan, math.nan)]
-    if not all(math.isfinite(end) for span in spans for end in span):
-        raise LogError(f"repeats: {repeats!r} is not a list of (start_s, end_s), in seconds")
-    return spans
-
-
-def _check_seed(seed: int) -> None:
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise LogError(f"seed: {seed!r} is not a whole number of at least 0")
 
 
 @dataclass(frozen=True, eq=False)
@@ -694,29 +401,3 @@ def _with_verdict(estimate: Estimate, judged: Sequence[Verdict]) -> Estimate:
         if one.parameter == estimate.name and not one.identifiable and estimate.identifiable:
             return Estimate(**{**vars(estimate), "identifiable": False, "remark": one.because})
     return estimate
-
-
-def as_dict(found: Identification) -> dict[str, Any]:
-    """Return the figures of an identification as plain values, for JSON."""
-    return {
-        "log": found.log.name,
-        "law": found.law.name,
-        "asymmetric": found.law.asymmetric,
-        "position_dependent": found.law.position_dependent,
-        "motion": found.settings.motion,
-        "estimates": [vars(one) for one in found.estimates],
-        "fixed": dict(found.fixed),
-        "channel": found.channel,
-        "rms_error": found.rms_error,
-        "relative_error_percent": found.relative_error_percent,
-        "residual_autocorrelation": found.residual_autocorrelation,
-        "aic": found.aic,
-        "bic": found.bic,
-        "condition_number": found.condition_number,
-        "verdicts": [vars(one) for one in found.verdicts],
-        "notes": list(found.notes),
-        "converged": found.converged,
-        "complete": found.complete,
-        "starts": found.starts,
-        "starts_agreeing": found.starts_agreeing,
-    }

@@ -12,8 +12,8 @@ from pydantic import Field
 
 from breakaway._core import __version__
 from breakaway.errors import LogError, ScenarioError
-from breakaway.identification.identify import Identification
 from breakaway.identification.inertia_friction import InertiaFrictionFit
+from breakaway.identification.result import Identification
 from breakaway.identification.uncertainty import Posterior
 from breakaway.identification.verdicts import stiction_peak
 from breakaway.logs.log import Array, Log

@@ -19,7 +19,7 @@ Places = NDArray[np.integer[Any]]
 """Numbers of rows."""
 
 if TYPE_CHECKING:
-    from breakaway.identification.identify import Estimate
+    from breakaway.identification.result import Estimate
 
 SPEED_RATIO = 3.0
 """Speeds must differ by this factor before what depends on speed shows."""

@@ -24,10 +24,10 @@ from scipy.stats import chi2, norm
 from breakaway.batch.batch import UNITS
 from breakaway.errors import LogError
 from breakaway.identification.comparison import ComparedLaw
-from breakaway.identification.identify import Identification
 from breakaway.identification.laws import SHARED, Law
 from breakaway.identification.prediction import Prediction
 from breakaway.identification.record import Rows, RunSettings, Span, core_record, measured_rows
+from breakaway.identification.result import Identification
 from breakaway.identification.uncertainty import LEVEL, Profile
 from breakaway.identification.verdicts import SPEED_RATIO, excitation
 from breakaway.logs.log import Log

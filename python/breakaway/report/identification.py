@@ -17,8 +17,8 @@ from breakaway._core import __version__
 from breakaway.errors import LogError
 from breakaway.identification.comparison import ComparedLaw
 from breakaway.identification.events import BreakawayReport
-from breakaway.identification.identify import Estimate, Identification
 from breakaway.identification.prediction import Prediction
+from breakaway.identification.result import Estimate, Identification
 from breakaway.identification.uncertainty import Posterior, Profile
 from breakaway.identification.verdicts import Verdict, stiction_peak
 from breakaway.output import write_atomically
