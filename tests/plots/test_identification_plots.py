@@ -13,24 +13,25 @@ from scipy.stats import chi2
 
 from breakaway.errors import LogError
 from breakaway.identification.comparison import compare_laws
+from breakaway.identification.friction import (
+    measured_friction,
+    simulated_friction,
+    steady_friction,
+)
 from breakaway.identification.identify import identify
 from breakaway.identification.laws import SHARED, Law
 from breakaway.identification.record import RunSettings, core_record, measured_rows
 from breakaway.identification.result import Identification
 from breakaway.logs import read_log
 from breakaway.logs.log import Log
+from breakaway.plots.friction import plot_friction_velocity, plot_hysteresis
 from breakaway.plots.identification import (
-    measured_friction,
     plot_drift,
     plot_fit,
-    plot_friction_velocity,
-    plot_hysteresis,
     plot_laws,
     plot_posterior,
     plot_profiles,
     plot_residual,
-    simulated_friction,
-    steady_friction,
 )
 from breakaway.plots.style import COLORS
 

@@ -8,11 +8,8 @@ import numpy as np
 
 from breakaway.errors import LogError
 from breakaway.identification.regression import TRIM_PER_DECIMATION
-from breakaway.logs.derived import Motion
+from breakaway.logs.derived import Motion, check_even
 from breakaway.logs.log import Log
-
-SPACING_TOLERANCE = 0.01
-"""Largest deviation of a time step from the median step, relative to it."""
 
 MINIMUM_SAMPLES = 50
 """Fewest samples that must be left after trimming and decimation."""
@@ -48,17 +45,7 @@ def check_settings(log: Log, lowpass_hz: float, decimation: int) -> None:
 
 def check_sampling(log: Log, decimation: int) -> None:
     """Raise `LogError` for uneven sampling, or for too few samples to filter."""
-    steps = np.diff(log.t_s)
-    median = float(np.median(steps))
-    deviation = np.abs(steps / median - 1.0)
-    worst = int(np.argmax(deviation))
-    if deviation[worst] > SPACING_TOLERANCE:
-        raise LogError(
-            f"{log.name}: column 't_s', row {worst + 2}: the step of {steps[worst]:.6g} s deviates "
-            f"by {100 * deviation[worst]:.3g} % from the median step of {median:.6g} s; at most "
-            f"{100 * SPACING_TOLERANCE:g} % is allowed, and nothing is resampled silently: cut "
-            "the log at its gaps, or resample it yourself and say so"
-        )
+    check_even(log)
     need = 2 * TRIM_PER_DECIMATION * decimation + MINIMUM_SAMPLES * decimation
     if log.rows < need:
         raise LogError(

@@ -23,13 +23,12 @@ from breakaway.identification.uncertainty import Posterior, Profile
 from breakaway.identification.verdicts import Verdict, stiction_peak
 from breakaway.output import write_atomically
 from breakaway.plots.events import plot_breakaway
+from breakaway.plots.friction import plot_friction_velocity, plot_hysteresis
 from breakaway.plots.identification import (
     easy_unit,
     law_words,
     plot_drift,
     plot_fit,
-    plot_friction_velocity,
-    plot_hysteresis,
     plot_laws,
     plot_posterior,
     plot_profiles,
