@@ -5,7 +5,7 @@ mod support;
 
 use std::f64::consts::PI;
 
-use breakaway_core::joint::{Joint, JointState, Lugre, TwoRegion};
+use breakaway_core::joint::{Joint, JointState, Law, Lugre, TwoRegion};
 use breakaway_core::test_models::paper_joint;
 use support::Rig;
 

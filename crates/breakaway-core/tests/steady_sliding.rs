@@ -2,7 +2,7 @@
 //! alone: the Stribeck curve, equations (4) and (8). The code never computes that curve; it has to
 //! come out of the bristle's differential equation.
 
-use breakaway_core::joint::{Bristle, Joint, JointState, Lugre};
+use breakaway_core::joint::{Bristle, Joint, JointState, Law, Lugre};
 use breakaway_core::test_models::paper_joint;
 
 /// The joint force after the bristle has settled at velocity `v` and position `x`: the bristle
