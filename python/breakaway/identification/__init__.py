@@ -22,10 +22,10 @@ from breakaway.identification.joint_file import JointFile
 from breakaway.identification.laws import LAWS
 from breakaway.identification.population import Population, fit_population
 from breakaway.identification.prediction import Prediction
-from breakaway.identification.result import Estimate, Identification
+from breakaway.identification.result import Identification
 from breakaway.identification.sliding import Reversal, SlidingLevel
 from breakaway.identification.uncertainty import Posterior, Profile
-from breakaway.identification.verdicts import Excitation, Verdict
+from breakaway.identification.verdicts import Estimate, Excitation, Verdict
 
 __all__ = [
     "LAWS",

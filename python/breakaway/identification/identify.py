@@ -35,7 +35,7 @@ from breakaway.identification.record import (
     predicted_channel,
     segments_of,
 )
-from breakaway.identification.result import Estimate, Identification, Internals
+from breakaway.identification.result import Identification, Internals
 from breakaway.identification.settings import (
     at_least_one,
     check_count,
@@ -53,7 +53,13 @@ from breakaway.identification.uncertainty import (
     covariance,
     interval,
 )
-from breakaway.identification.verdicts import Verdict, excitation, unexcited, verdicts
+from breakaway.identification.verdicts import (
+    Estimate,
+    Verdict,
+    excitation,
+    unexcited,
+    verdicts,
+)
 from breakaway.logs.log import Array, Log
 from breakaway.scenario.controller import Pid
 

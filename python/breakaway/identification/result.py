@@ -28,25 +28,8 @@ from breakaway.identification.uncertainty import (
     posterior,
     profile,
 )
-from breakaway.identification.verdicts import Verdict
+from breakaway.identification.verdicts import Estimate, Verdict
 from breakaway.logs.log import Array, Log
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """One parameter: its value, standard error and 95 % interval.
-
-    ``standard_error`` is that of the value; the interval of a positive parameter is that of its
-    logarithm, so it is not symmetric. ``identifiable`` is whether the log tells it.
-    """
-
-    name: str
-    value: float
-    standard_error: float
-    low: float
-    high: float
-    identifiable: bool
-    remark: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,6 @@ from breakaway.logs.log import Array
 Places = NDArray[np.integer[Any]]
 """Numbers of rows."""
 
-if TYPE_CHECKING:
-    from breakaway.identification.result import Estimate
-
 SPEED_RATIO = 3.0
 """Speeds must differ by this factor before what depends on speed shows."""
 
@@ -32,6 +29,23 @@ PRESLIDING_QUANTA = 5.0
 
 NO_PEAK = 1.02
 """F_s / F_c whose interval ends below this is no stiction peak."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: its value, standard error and 95 % interval.
+
+    ``standard_error`` is that of the value; the interval of a positive parameter is that of its
+    logarithm, so it is not symmetric. ``identifiable`` is whether the log tells it.
+    """
+
+    name: str
+    value: float
+    standard_error: float
+    low: float
+    high: float
+    identifiable: bool
+    remark: str = ""
 
 
 @dataclass(frozen=True)

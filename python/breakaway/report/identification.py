@@ -18,9 +18,9 @@ from breakaway.errors import LogError
 from breakaway.identification.comparison import ComparedLaw
 from breakaway.identification.events import BreakawayReport
 from breakaway.identification.prediction import Prediction
-from breakaway.identification.result import Estimate, Identification
+from breakaway.identification.result import Identification
 from breakaway.identification.uncertainty import Posterior, Profile
-from breakaway.identification.verdicts import Verdict, stiction_peak
+from breakaway.identification.verdicts import Estimate, Verdict, stiction_peak
 from breakaway.output import write_atomically
 from breakaway.plots.events import plot_breakaway
 from breakaway.plots.friction import plot_friction_velocity, plot_hysteresis
