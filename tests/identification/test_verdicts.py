@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from breakaway.errors import LogError
 from breakaway.identification import Identification, Verdict, identify
 from breakaway.identification.verdicts import stiction_peak
 from breakaway.logs import Log
@@ -90,8 +91,10 @@ def test_presliding_below_the_noise_holds_the_damper(rig: Any, lugre: dict[str, 
 
 
 def test_a_rich_log_tells_all(rich_fit: Identification) -> None:
-    assert all(one.identifiable for one in rich_fit.verdicts)
-    assert {one.parameter for one in rich_fit.verdicts} == set(rich_fit.values)
+    assert {one.parameter for one in rich_fit.verdicts if one.identifiable} == set(rich_fit.values)
+    held = [one for one in rich_fit.verdicts if not one.identifiable]
+    assert [one.parameter for one in held] == ["mass_kg"]
+    assert "inertia is lost in the force of friction" in held[0].because
     assert peak(rich_fit).startswith("stiction peak: seen; F_s / F_c = 1.")
 
 
@@ -116,3 +119,37 @@ def test_an_estimate_that_is_not_told_says_so() -> None:
         assert verdict.identifiable == one.identifiable
         assert one.identifiable or (one.remark and verdict.remedy)
     assert not found["stribeck_velocity_m_per_s"].identifiable
+
+
+def test_the_mass_is_fitted_where_the_log_shows_it(rig: Any, lugre: dict[str, float]) -> None:
+    log = rig(**lugre).moved(1500, 1000.0, force_noise_n=0.1)
+    v = np.gradient(log.position_m, log.t_s)
+    heavy = Log(
+        t_s=log.t_s,
+        position_m=log.position_m,
+        force_n=log.force_n + 30.0 * np.gradient(v, log.t_s),
+    )
+    assert identify(heavy, law="coulomb", starts=1).values["mass_kg"] == pytest.approx(
+        30.0, rel=0.1
+    )
+
+
+def test_a_force_that_drives_by_friction_is_refused(rich: Log) -> None:
+    backward = Log(t_s=rich.t_s, position_m=rich.position_m, force_n=-rich.force_n)
+    with pytest.raises(LogError, match="force and velocity oppose each other"):
+        identify(backward, law="coulomb", starts=1)
+
+
+def test_a_law_that_explains_little_is_said_to(rich: Log) -> None:
+    rng = np.random.default_rng(3)
+    noisy = rich.force_n + 5.0 * float(np.std(rich.force_n)) * rng.standard_normal(rich.rows)
+    log = Log(t_s=rich.t_s, position_m=rich.position_m, force_n=noisy)
+    assert "explains the log poorly" in identify(log, law="coulomb", starts=1).notes[0]
+
+
+def test_noise_of_the_position_is_said_to_bias_the_stribeck_term(
+    rig: Any, lugre: dict[str, float]
+) -> None:
+    log = rig(**lugre).moved(1500, 1000.0, force_noise_n=0.1, position_noise_m=2e-5)
+    notes = identify(log, law="stribeck", lowpass_hz=200.0, starts=1).notes
+    assert any("draws F_s / F_c and v_s beyond their intervals" in note for note in notes)

@@ -132,13 +132,13 @@ def test_every_parameter_has_its_row(found, page):
     assert f"{value} ± {error}" in coulomb
     assert coulomb.count(" to ") == 2  # from the errors, and from the profile
     mass = next(row for row in rows if row.strip().startswith("mass"))
-    assert "held, not fitted" in mass
+    assert "held at 0: inertia is lost" in mass
 
 
 def test_every_verdict_that_is_negative_has_its_reason_and_remedy(simple, simple_page):
     text = " ".join(Page(simple_page).rows)
     negative = [one for one in simple.verdicts if not one.identifiable]
-    assert len(negative) == 4
+    assert len(negative) == 5
     for one in negative:
         assert one.because in text
         assert one.remedy in text

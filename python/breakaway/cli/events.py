@@ -30,6 +30,18 @@ def events(
             "peak counts as a lower bound.",
         ),
     ] = 0.5,
+    mapping: Annotated[
+        Path | None,
+        typer.Option(
+            help="TOML file that names channels, units and signs.",
+            metavar="FILE",
+            show_default="LOG with .toml, if it is there",
+        ),
+    ] = None,
+    resample_hz: Annotated[
+        float | None,
+        typer.Option(help="Bring channels of different stamps to this rate, by interpolation."),
+    ] = None,
     population: Annotated[
         bool,
         typer.Option(
@@ -41,21 +53,28 @@ def events(
 ) -> None:
     """Find breakaway in logs: force, presliding, loading rate, and what is only a lower bound.
 
-    A log that begins moving is refused for breakaway, with the reason.
+    A log that begins moving is refused for breakaway, with the reason. The
+    force is taken as it was measured: inertia is not subtracted.
     """
     from breakaway.identification import find_breakaway_events, fit_population
     from breakaway.logs import read_log
 
-    reports = []
+    reports, hints = [], []
     with busy("looking for breakaway ..."):
         for path in logs:
-            log = read_log(path)
+            log = read_log(path, mapping)
+            if resample_hz is not None:
+                log = log.resampled(rate_hz=resample_hz)
             for pair in use or []:
                 channel, sign, other = pair.partition("=")
                 if not (channel and sign and other):
                     raise typer.BadParameter(f"--use {pair!r} is not of the form CHANNEL=OTHER")
                 log = log.using(**{channel: other})
             reports.append(find_breakaway_events(log, passed_share=passed_share))
+            if not use and "friction_n" in log.channels:
+                hints.append(
+                    f"- {log.name}: force_n is used; --use force_n=friction_n takes friction"
+                )
         found = fit_population(reports, passed_share=passed_share) if population else None
     if json:
         say_json({"logs": [asdict(report) for report in reports], **_fits(found)})
@@ -66,6 +85,8 @@ def events(
             say(f"- {report.name}: {reason}")
         if report.offset_n is None:
             say(f"- {report.name}: offset unknown, {report.offset_reason}")
+    for hint in hints:
+        say(hint)
     if found is not None:
         say(_population(found))
         for note in found.notes:

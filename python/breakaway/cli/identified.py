@@ -100,6 +100,8 @@ def _named(channel: str) -> str:
 def _estimates(found: Identification) -> Sheet:
     held = ", ".join(f"{name} = {value:g}" for name, value in found.fixed.items())
     title = f"{found.log.name}: {found.law.label}, {found.settings.motion} motion"
+    if not found.complete:
+        title += ", STOPPED before it was done: best so far"
     shown = Sheet(
         title + (f" (held: {held})" if held else ""),
         ["parameter", "value", "std. error", "95 % interval", "unit", "told by the log"],

@@ -133,6 +133,10 @@ def identify(
             "--report", help="Write an HTML report too, beside --out or beside the log's name here."
         ),
     ] = False,
+    resample_hz: Annotated[
+        float | None,
+        typer.Option(help="Bring channels of different stamps to this rate, by interpolation."),
+    ] = None,
     lowpass_hz: Annotated[
         float | None, typer.Option(help="Cutoff of the low-pass on position.")
     ] = None,
@@ -165,6 +169,8 @@ def identify(
     given |= {"--motion": motion is not MotionChoice.IMPOSED}
     _refuse_unused(law, given, decimation)
     measured = read_log(log, mapping, format.value if format else None)
+    if resample_hz is not None:
+        measured = measured.resampled(rate_hz=resample_hz)
     for pair in use or []:
         channel, other = _pair(pair, "--use", "CHANNEL=OTHER")
         measured = measured.using(**{channel: other})
@@ -368,6 +374,9 @@ def _check_target(log: Path, out: Path) -> None:
     from breakaway.output import refuse_to_overwrite
 
     refuse_to_overwrite(log, out)
+    if not out.parent.is_dir():
+        reason = "Not a directory" if out.parent.exists() else "its folder is missing"
+        raise OutputError(f"{out}: can not be written: {reason}")
     if out.is_file():
         try:
             JointFile.load(out)

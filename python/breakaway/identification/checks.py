@@ -91,5 +91,5 @@ def check_mass(log: Log, mass_kg: float, error_kg: float) -> None:
     raise LogError(
         f"{log.name}: the mass can not be determined ({mass_kg:.4g} ± {error_kg:.2g} kg, it must "
         f"exceed {SIGNIFICANCE:g} standard errors): accelerate harder, or measure the force "
-        "with less noise"
+        "with less noise; or name a law (--law), which can do without the mass"
     )

@@ -55,7 +55,7 @@ def compare_laws(
     held_out : (start_s, end_s)
         Rows that are predicted, not fitted.
     laws : sequence of str
-        Laws, from simple to rich.
+        Laws, from simple to rich; each starts where the one before ended.
     **settings
         Further settings of `identify`; ``repeats`` by default is all before ``held_out``.
 
@@ -96,9 +96,10 @@ def compare_laws(
             )
     if not laws or "law" in settings:
         raise LogError("laws: name the laws that are compared, from simple to rich")
-    fits = []
+    fits: list[Identification] = []
     for law in laws:
-        fits.append(identify(log, law=law, **settings))
+        simpler = dict(fits[-1].values) if fits else {}
+        fits.append(identify(log, law=law, **{"guesses": simpler, **settings}))
         if not fits[-1].complete:
             break  # Ctrl-C: what is there is compared
     errors = [fit.predict(spans=[held_out]).rms_error for fit in fits]
@@ -113,8 +114,17 @@ def compare_laws(
         gained = 1.0 - error / errors[best]
         drop = fits[best].aic_for(rows) - fit.aic_for(rows)
         pays = gained > PAYS_ERROR and drop > PAYS_AIC
-        because = f"held-out error {100 * gained:+.1f} % better, AIC {drop:+.1f} better"
+        because = f"held-out error {_change(gained)}, AIC {drop:+.1f} better"
         out.append(ComparedLaw(fit, error, fits[best].law.label, pays, because))
         if pays:
             best = place
     return tuple(out)
+
+
+def _change(gained: float) -> str:
+    """Say by how much an error is smaller.
+
+    >>> _change(0.25), _change(-0.6)
+    ('25.0 % smaller', '60.0 % larger')
+    """
+    return f"{100 * abs(gained):.1f} % {'smaller' if gained >= 0.0 else 'larger'}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +11,18 @@ from breakaway.errors import LogError
 from breakaway.identification.laws import Law, Layout, Parameter
 from breakaway.identification.record import STEP_LIMIT, Rows, RunSettings
 from breakaway.logs.derived import noise_floor
-from breakaway.logs.log import Array
+from breakaway.logs.log import Array, Log
 
 MOVING = 0.05
 """A row moves if its speed exceeds this share of the largest speed."""
+
+INERTIA_ERRORS = 5.0
+INERTIA_SHARE = 0.05
+"""Inertia shows if the regression's mass exceeds so many standard errors, and its force this
+share of the whole."""
+
+BRAKING = 0.5
+"""Share of the power that may brake, net."""
 
 REACH = 1e4
 """A positive parameter stays within its first guess times or divided by this."""
@@ -24,6 +33,7 @@ class Scales:
     """Rough size of everything in a log, which guesses and bounds come from."""
 
     mass_kg: float
+    mass_shows: bool
     coulomb_n: float
     viscous_n_s_per_m: float
     offset_n: float
@@ -31,6 +41,7 @@ class Scales:
     speed_m_per_s: float
     travel_m: float
     noise_m: float
+    velocity_noise_m_per_s: float
     period_s: float
 
     def stiffest(self, settings: RunSettings) -> float:
@@ -41,7 +52,7 @@ class Scales:
         return STEP_LIMIT**2 * self.mass_kg / step**2
 
 
-def scales(rows: Rows, chosen: Array, settings: RunSettings, mass_kg: float | None) -> Scales:
+def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     """Regress force on acceleration, speed and direction where the part moves.
 
     Raises
@@ -62,16 +73,19 @@ def scales(rows: Rows, chosen: Array, settings: RunSettings, mass_kg: float | No
     if not np.any(force):
         raise LogError(f"{log.name}: the force is 0 in every row; record the force on the part")
     moving = np.abs(v) > MOVING * speed
-    inertial = a if mass_kg is None and settings.motion != "imposed" else np.zeros_like(a)
-    columns = np.column_stack([inertial, v, np.sign(v), np.ones_like(v)])[moving]
-    held = (mass_kg or 0.0) * a[moving]
-    found = np.linalg.lstsq(columns, force[moving] - held, rcond=None)[0]
+    _check_dissipation(log, force, v)
+    held = np.zeros_like(force) if mass_kg is None else mass_kg * a
+    columns = np.column_stack([a, v, np.sign(v), np.ones_like(v)])[moving]
     size = float(np.sqrt(np.mean(force**2)))
+    inertia = mass_kg if mass_kg is not None else _inertia(columns, force[moving], size)
+    if mass_kg is not None or inertia == 0.0:
+        columns[:, 0] = 0.0
+    found = np.linalg.lstsq(columns, (force - held)[moving], rcond=None)[0]
     coulomb = max(float(found[2]), 0.05 * size)
-    inertia = float(found[0]) if mass_kg is None else mass_kg
     fallback = 0.01 * size / max(float(np.std(a)), 1e-300)
     return Scales(
         mass_kg=inertia if inertia > 0.0 else fallback,
+        mass_shows=inertia > 0.0,
         coulomb_n=coulomb,
         viscous_n_s_per_m=max(float(found[1]), 0.02 * coulomb / speed),
         offset_n=float(found[3]),
@@ -79,8 +93,44 @@ def scales(rows: Rows, chosen: Array, settings: RunSettings, mass_kg: float | No
         speed_m_per_s=speed,
         travel_m=travel,
         noise_m=noise_m,
+        velocity_noise_m_per_s=_velocity_noise(rows, noise_m),
         period_s=float(np.median(np.diff(log.t_s))),
     )
+
+
+def _inertia(columns: Array, force: Array, size: float) -> float:
+    """Return the mass in kg that the regression finds, or 0 where the force hardly shows it."""
+    found, _, rank, _ = np.linalg.lstsq(columns, force, rcond=None)
+    if rank < columns.shape[1]:
+        return 0.0
+    residual = force - columns @ found
+    spread = np.linalg.inv(columns.T @ columns)[0, 0]
+    error = float(np.sqrt(spread * float(residual @ residual) / len(force)))
+    share = abs(float(found[0])) * float(np.sqrt(np.mean(columns[:, 0] ** 2))) / size
+    shows = found[0] > INERTIA_ERRORS * error and share > INERTIA_SHARE
+    return float(found[0]) if shows else 0.0
+
+
+def _velocity_noise(rows: Rows, noise_m: float) -> float:
+    """Return the noise of the velocity in m/s: that of the position within the low-pass, as rate.
+
+    ::
+
+        s_v² = s_x² (2 / f_s) ∫ (2 π f)² df from 0 to the cutoff
+    """
+    rate = rows.log.sample_rate_hz
+    cutoff = rows.lowpass_hz or 0.5 * rate
+    return noise_m * float(np.sqrt(8.0 * np.pi**2 * cutoff**3 / (3.0 * rate)))
+
+
+def _check_dissipation(log: Log, force: Array, v: Array) -> None:
+    """Raise `LogError` where the force brakes on the whole: friction can not drive."""
+    power = force * v
+    if float(np.sum(power)) < -BRAKING * float(np.sum(np.abs(power))):
+        raise LogError(
+            f"{log.name}: force and velocity oppose each other on the whole, as if friction drove "
+            "the part; flip the sign of one: 'sign = -1' in the mapping, or the channel's own"
+        )
 
 
 def stand_in(law: Law, settings: RunSettings, sizes: Scales) -> dict[str, float]:
@@ -134,13 +184,17 @@ def bounds_of(
 
 
 def internal_guess(
-    layout: Layout, sizes: Scales, settings: RunSettings
+    layout: Layout, sizes: Scales, settings: RunSettings, known: Mapping[str, float]
 ) -> tuple[Array, Array, tuple[Array, Array]]:
-    """Return first guess, half width of the draws and bounds of the internal parameters."""
+    """Return first guess, half width of the draws and bounds of the internal parameters.
+
+    ``known`` are guesses by name, which go before those from the log.
+    """
     guess, spread, low, high = [], [], [], []
     for parameter in layout.free:
         value, width = first_guess(parameter, sizes, settings)
         ends = bounds_of(parameter, value, sizes, settings)
+        value = known.get(parameter.name, value)
         guess.append(parameter.internal(min(max(value, ends[0]), ends[1])))
         spread.append(width)
         low.append(parameter.internal(ends[0]))

@@ -65,6 +65,12 @@ from breakaway.scenario.controller import Pid
 
 Method = Literal["least_squares", "output_error"]
 MOST_EVALUATIONS = 100
+POOR_PERCENT = 20.0
+"""Relative error from which a law explains a log poorly."""
+
+NOISY_SPEED = 0.02
+"""Noise of the velocity, as a share of v_s, from which Stribeck parameters are biased."""
+
 STEPS: Mapping[str, int] = {"imposed": 4, "free": 1, "closed_loop": 1}
 
 
@@ -80,6 +86,7 @@ def identify(
     repeats: Sequence[Span] = (),
     fixed: Mapping[str, float] | None = None,
     free: Sequence[str] = (),
+    guesses: Mapping[str, float] | None = None,
     origin_m: float | None = None,
     force_held: bool = True,
     lowpass_hz: float | None = None,
@@ -123,10 +130,12 @@ def identify(
         which shows the drift between repeats. By default the whole log as one. What lies
         outside is not used. Gaps within a span split it.
     fixed : mapping of str to float, optional
-        Parameters that are held. With imposed motion the mass is held at 0 unless it is given.
+        Parameters that are held.
     free : sequence of str
         Parameters that are fitted although the log hardly excites them. Otherwise such are held
         at a neutral value, and ``verdicts`` says so.
+    guesses : mapping of str to float, optional
+        Where the first start begins, by parameter; by default as a regression of the log says.
     origin_m : float, optional
         Position at which levels and offsets hold where they depend on position; by default the
         middle of the travel.
@@ -197,17 +206,16 @@ def identify(
     rows = measured_rows(log, settings)
     spans, segments, owners = segments_of(rows, checked_spans(repeats))
     held = dict(fixed or {})
-    if motion == "imposed" and method == "output_error" and "mass_kg" not in free:
-        held.setdefault("mass_kg", 0.0)
     parameters = chosen.parameters(len(spans))
     names = [one.name for one in parameters]
     check_fixed(held, parameters, motion)
     check_free(free, fixed or {}, names)
     check_count(law, parameters, len(spans))
     places = np.concatenate([np.arange(first, end) for first, end in segments])
-    sizes = scales(rows, places, settings, held.get("mass_kg"))
+    sizes = scales(rows, places, held.get("mass_kg"))
     open_names = [name for name in names if name not in held and name not in free]
-    back = unexcited(open_names, excitation(rows, places), settings)
+    shown = excitation(rows, places)
+    back = unexcited(open_names, shown, settings, sizes.mass_shows or method == "least_squares")
     held_back = {name: value for name, (value, _) in back.items()}
     fixed_numbers = {**stand_in(chosen, settings, sizes), **held_back, **held}
     layout = Layout.of(parameters, fixed_numbers, tuple(owners))
@@ -216,7 +224,7 @@ def identify(
     scale = 0.05 * sizes.force_n if channel == "force_n" else 0.01 * sizes.travel_m
     record = core_record(rows, segments, chosen, settings)
     problem = Problem(record, layout, channel, measured, scale)
-    guess, spread, bounds = internal_guess(layout, sizes, settings)
+    guess, spread, bounds = internal_guess(layout, sizes, settings, guesses or {})
     if method == "least_squares":
         best = Minimum(
             _regressed(log, layout, chosen, settings, repeats, held), 0.0, 1, converged=True
@@ -229,7 +237,18 @@ def identify(
         )
     judged = tuple(verdict for _, verdict in back.values())
     found = _Found(
-        log, chosen, settings, tuple(spans), held, judged, rows, problem, bounds, loss, seed
+        log,
+        chosen,
+        settings,
+        tuple(spans),
+        held,
+        judged,
+        rows,
+        problem,
+        bounds,
+        loss,
+        seed,
+        sizes.velocity_noise_m_per_s,
     )
     return found.result(best.internal, best.converged, complete, starts, agreeing)
 
@@ -283,6 +302,7 @@ class _Found:
     bounds: tuple[Array, Array]
     loss: str
     seed: int
+    velocity_noise_m_per_s: float
 
     def result(
         self,
@@ -302,6 +322,7 @@ class _Found:
         power = float(residual @ residual)
         measured = problem.measured
         size = np.linalg.norm(measured if problem.channel == "force_n" else measured - measured[0])
+        percent = 100.0 * float(np.linalg.norm(errors) / size)
         judged = verdicts(estimates, self.held_back, self.law, self.fixed)
         return Identification(
             log=self.log,
@@ -311,12 +332,15 @@ class _Found:
             estimates=tuple(_with_verdict(one, judged) for one in estimates),
             fixed=dict(self.fixed),
             rms_error=rms,
-            relative_error_percent=100.0 * float(np.linalg.norm(errors) / size),
+            relative_error_percent=percent,
             residual_autocorrelation=float(residual[1:] @ residual[:-1]) / max(power, 1e-300),
             effective_rows=known.weight * len(residual),
             condition_number=known.condition_number,
             verdicts=judged,
-            notes=tuple(self._notes(known, complete, converged, starts, agreeing)),
+            notes=(
+                *self._warnings(best, percent),
+                *self._notes(known, complete, converged, starts, agreeing),
+            ),
             converged=converged,
             complete=complete,
             starts=starts,
@@ -363,6 +387,25 @@ class _Found:
                 remark = f"known within a factor of {math.exp(min(2 * error, 50.0)):.2g} only"
             told = not remark
             out.append(Estimate(parameter.name, value, error * slope[i], *ends, told, remark))
+        return out
+
+    def _warnings(self, best: Array, percent: float) -> list[str]:
+        """Say what makes the figures worth less than their intervals."""
+        out = []
+        if percent > POOR_PERCENT:
+            out.append(
+                f"this law explains the log poorly, it is {percent:.0f} % off: the parameters mean "
+                "little; try another law, motion or mapping"
+            )
+        places = [i for i, one in enumerate(self.problem.layout.free) if "stribeck" in one.name]
+        if self.settings.motion == "imposed" and places:
+            share = self.velocity_noise_m_per_s / math.exp(best[places[0]])
+            if share > NOISY_SPEED:
+                out.append(
+                    f"noise of the position makes the velocity uncertain by {100 * share:.2g} % of "
+                    "v_s, which draws F_s / F_c and v_s beyond their intervals: lower lowpass_hz, "
+                    "or measure the position with less noise"
+                )
         return out
 
     def _notes(

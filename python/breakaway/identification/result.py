@@ -135,7 +135,8 @@ class Identification:
         if motion is not None:
             known("motion", motion, MOTIONS)
             settings = RunSettings(**{**vars(settings), "motion": motion})
-            if motion != "imposed" and self.fixed.get("mass_kg") == 0.0:
+            mass_kg = self.internals.problem.layout.numbers(self.internals.best)[0]
+            if motion != "imposed" and mass_kg == 0.0:
                 raise LogError(
                     f"motion: {motion!r} needs a mass, and the fit held it at 0; identify with "
                     "fixed={'mass_kg': ...}"

@@ -190,12 +190,12 @@ _REMEDIES = {
     "resonance",
     "offset_n": "let the part slide both ways",
     "elastic_share": "load the joint slowly to and fro up to breakaway",
-    "mass_kg": "accelerate harder, or weigh the part and fix the mass",
+    "mass_kg": "accelerate harder, or weigh the part and fix the mass (`fixed`, --fix)",
 }
 
 
 def unexcited(
-    names: Sequence[str], shown: Excitation, settings: RunSettings
+    names: Sequence[str], shown: Excitation, settings: RunSettings, mass_shows: bool
 ) -> dict[str, tuple[float, Verdict]]:
     """Return the parameters that a log does not excite: the value to hold each at, and why.
 
@@ -210,6 +210,8 @@ def unexcited(
             verdict = Verdict(name, False, f"held at {value:g}: {because}", remedy)
             out[name] = (value, verdict)
 
+    if settings.motion == "imposed" and not mass_shows:
+        hold("mass_kg", 0.0, "inertia is lost in the force of friction")
     if shown.speed_ratio < SPEED_RATIO:
         speeds = (
             f"nearly one speed, 90 % of the sliding rows lie between "
