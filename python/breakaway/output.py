@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 import shutil
 import stat
 import tempfile
@@ -29,17 +30,18 @@ def write_atomically(path: Path, content: bytes) -> None:
         if path.exists() and not path.is_file():
             path.write_bytes(content)
             return
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as error:
         raise _not_written(path, error) from None
+    # The name is known before the file is there, so that a Ctrl-C at any moment leaves none behind.
+    staging = path.with_name(f".{path.name}.{secrets.token_hex(8)}")
     try:
-        with os.fdopen(handle, "wb") as file:
+        with staging.open("xb") as file:
             file.write(content)
-        Path(name).chmod(_mode(path))
-        os.replace(name, path)  # noqa: PTH105 - the one atomic step
+        staging.chmod(_mode(path))
+        staging.replace(path)
     except BaseException as error:
         with suppress(OSError):
-            Path(name).unlink()
+            staging.unlink()
         if isinstance(error, OSError):
             raise _not_written(path, error) from None
         raise
