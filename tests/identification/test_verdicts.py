@@ -8,7 +8,7 @@ import numpy.typing as npt
 import pytest
 
 from breakaway.errors import LogError
-from breakaway.identification import Identification, Verdict, identify
+from breakaway.identification import Identification, Verdict, identifiability, identify
 from breakaway.identification.verdicts import stiction_peak
 from breakaway.logs import Log
 
@@ -152,3 +152,20 @@ def test_noise_of_the_position_is_said_to_bias_the_stribeck_term(
     log = rig(**lugre).moved(1500, 1000.0, force_noise_n=0.1, position_noise_m=2e-5)
     notes = identify(log, law="stribeck", lowpass_hz=200.0, starts=1).notes
     assert any("draws F_s / F_c and v_s beyond their intervals" in note for note in notes)
+
+
+def test_identifiability_is_told_without_a_fit(rich: Log, rich_fit: Identification) -> None:
+    found = rich_fit
+    report = identifiability(rich, law="lugre", guesses=found.values)
+    assert report.excitation == found.excitation
+    assert set(report.expected_error) == set(found.values)
+    assert [one.parameter for one in report.held] == ["mass_kg"]
+    for name in ("coulomb_n", "stiffness_n_per_m"):
+        reached = found[name].standard_error / found[name].value
+        assert 0.2 < report.expected_error[name] / reached < 2.0
+
+
+def test_what_a_log_can_not_tell_has_an_infinite_expected_error() -> None:
+    log = log_of(0.05 + 0.045 * np.sin(3 * T_S), lambda v: 5.0 + 40.0 * v)
+    expected = identifiability(log, law="coulomb", asymmetric=True).expected_error
+    assert np.isinf(expected["coulomb_negative_n"]) and expected["coulomb_positive_n"] < 0.1

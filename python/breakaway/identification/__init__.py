@@ -10,6 +10,7 @@ from breakaway.identification.events import (
     BreakawayReport,
     find_breakaway_events,
 )
+from breakaway.identification.identifiability import Identifiability, identifiability
 from breakaway.identification.identify import identify
 from breakaway.identification.inertia_friction import (
     NOT_IDENTIFIED,
@@ -38,6 +39,7 @@ __all__ = [
     "Estimate",
     "Excitation",
     "FittedDistribution",
+    "Identifiability",
     "Identification",
     "InertiaFrictionFit",
     "JointFile",
@@ -53,6 +55,7 @@ __all__ = [
     "find_breakaway_events",
     "fit_distribution",
     "fit_population",
+    "identifiability",
     "identify",
     "identify_inertia_friction",
 ]

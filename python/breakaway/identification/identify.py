@@ -11,14 +11,13 @@ import numpy as np
 
 from breakaway.errors import LogError
 from breakaway.identification.cascade import Cascade
-from breakaway.identification.guess import internal_guess, scales, stand_in
+from breakaway.identification.identifiability import Prepared, prepare
 from breakaway.identification.inertia_friction import identify_inertia_friction
 from breakaway.identification.laws import Law, LawName, Layout, check_law
 from breakaway.identification.output_error import (
     LOSSES,
     Loss,
     Minimum,
-    Problem,
     Progress,
     minimize_all,
     screened_starts,
@@ -27,23 +26,14 @@ from breakaway.identification.prediction import Prediction, predict_rows
 from breakaway.identification.record import (
     MOTIONS,
     MotionKind,
-    Rows,
     RunSettings,
     Span,
-    core_record,
-    measured_rows,
-    predicted_channel,
-    segments_of,
 )
 from breakaway.identification.result import Identification, Internals
 from breakaway.identification.settings import (
     at_least_one,
-    check_count,
-    check_fixed,
-    check_free,
     check_run,
     check_seed,
-    checked_spans,
     known,
 )
 from breakaway.identification.uncertainty import (
@@ -56,8 +46,6 @@ from breakaway.identification.uncertainty import (
 from breakaway.identification.verdicts import (
     Estimate,
     Verdict,
-    excitation,
-    unexcited,
     verdicts,
 )
 from breakaway.logs.log import Array, Log
@@ -203,53 +191,20 @@ def identify(
         steps=steps,
         origin_m=_origin(log, position_dependent, origin_m),
     )
-    rows = measured_rows(log, settings)
-    spans, segments, owners = segments_of(rows, checked_spans(repeats))
-    held = dict(fixed or {})
-    parameters = chosen.parameters(len(spans))
-    names = [one.name for one in parameters]
-    check_fixed(held, parameters, motion)
-    check_free(free, fixed or {}, names)
-    check_count(law, parameters, len(spans))
-    places = np.concatenate([np.arange(first, end) for first, end in segments])
-    sizes = scales(rows, places, held.get("mass_kg"))
-    open_names = [name for name in names if name not in held and name not in free]
-    shown = excitation(rows, places)
-    back = unexcited(open_names, shown, settings, sizes.mass_shows or method == "least_squares")
-    held_back = {name: value for name, (value, _) in back.items()}
-    fixed_numbers = {**stand_in(chosen, settings, sizes), **held_back, **held}
-    layout = Layout.of(parameters, fixed_numbers, tuple(owners))
-    channel = predicted_channel(settings.motion)
-    measured = np.ascontiguousarray(rows.columns[0 if channel == "position_m" else 3][places])
-    scale = 0.05 * sizes.force_n if channel == "force_n" else 0.01 * sizes.travel_m
-    record = core_record(rows, segments, chosen, settings)
-    problem = Problem(record, layout, channel, measured, scale)
-    guess, spread, bounds = internal_guess(layout, sizes, settings, guesses or {})
+    asked = prepare(log, chosen, settings, repeats, fixed or {}, free, guesses or {}, method)
     if method == "least_squares":
-        best = Minimum(
-            _regressed(log, layout, chosen, settings, repeats, held), 0.0, 1, converged=True
-        )
+        layout = asked.problem.layout
+        internal = _regressed(log, layout, chosen, settings, repeats, asked.held)
+        best = Minimum(internal, 0.0, 1, converged=True)
         complete, starts, agreeing = True, 1, 1
     else:
-        drawn = screened_starts(problem, guess, spread, bounds, starts, seed)
-        best, agreeing, complete = minimize_all(
-            problem, drawn, bounds, loss, MOST_EVALUATIONS, progress
+        drawn = screened_starts(
+            asked.problem, asked.guess, asked.spread, asked.bounds, starts, seed
         )
-    judged = tuple(verdict for _, verdict in back.values())
-    found = _Found(
-        log,
-        chosen,
-        settings,
-        tuple(spans),
-        held,
-        judged,
-        rows,
-        problem,
-        bounds,
-        loss,
-        seed,
-        sizes.velocity_noise_m_per_s,
-    )
+        best, agreeing, complete = minimize_all(
+            asked.problem, drawn, asked.bounds, loss, MOST_EVALUATIONS, progress
+        )
+    found = _Found(log, chosen, settings, asked, loss, seed)
     return found.result(best.internal, best.converged, complete, starts, agreeing)
 
 
@@ -294,15 +249,9 @@ class _Found:
     log: Log
     law: Law
     settings: RunSettings
-    spans: tuple[Span, ...]
-    fixed: Mapping[str, float]
-    held_back: tuple[Verdict, ...]
-    rows: Rows
-    problem: Problem
-    bounds: tuple[Array, Array]
+    asked: Prepared
     loss: str
     seed: int
-    velocity_noise_m_per_s: float
 
     def result(
         self,
@@ -312,7 +261,7 @@ class _Found:
         starts: int,
         agreeing: int,
     ) -> Identification:
-        problem = self.problem
+        problem = self.asked.problem
         residual, slopes = problem.residual_and_slopes(best)
         weighted = _robust(self.loss, residual)
         known = covariance(weighted * residual, weighted[:, None] * slopes)
@@ -323,14 +272,15 @@ class _Found:
         measured = problem.measured
         size = np.linalg.norm(measured if problem.channel == "force_n" else measured - measured[0])
         percent = 100.0 * float(np.linalg.norm(errors) / size)
-        judged = verdicts(estimates, self.held_back, self.law, self.fixed)
+        judged = verdicts(estimates, self.asked.held_back, self.law, self.asked.held)
         return Identification(
             log=self.log,
             law=self.law,
             settings=self.settings,
-            spans=self.spans,
+            spans=self.asked.spans,
+            excitation=self.asked.excitation,
             estimates=tuple(_with_verdict(one, judged) for one in estimates),
-            fixed=dict(self.fixed),
+            fixed=dict(self.asked.held),
             rms_error=rms,
             relative_error_percent=percent,
             residual_autocorrelation=float(residual[1:] @ residual[:-1]) / max(power, 1e-300),
@@ -348,29 +298,31 @@ class _Found:
             seed=self.seed,
             loss=self.loss,
             fit=predict_rows(
-                self.rows,
-                self.spans,
+                self.asked.rows,
+                self.asked.spans,
                 self.law,
                 self.settings,
                 problem.layout.numbers(best),
                 same=True,
             ),
-            internals=Internals(problem, best, self.bounds, known),
+            internals=Internals(problem, best, self.asked.bounds, known),
         )
 
     def _fitted_rows(self, best: Array) -> Prediction:
-        numbers = self.problem.layout.numbers(best)
-        return predict_rows(self.rows, self.spans, self.law, self.settings, numbers, same=True)
+        numbers = self.asked.problem.layout.numbers(best)
+        return predict_rows(
+            self.asked.rows, self.asked.spans, self.law, self.settings, numbers, same=True
+        )
 
     def _estimates(self, best: Array, known: Covariance) -> list[Estimate]:
-        layout = self.problem.layout
+        layout = self.asked.problem.layout
         slope = layout.slope(best)
-        low, high = self.bounds
+        low, high = self.asked.bounds
         out = []
         for i, parameter in enumerate(layout.free):
             error = math.sqrt(known.matrix[i, i])
             value = float(parameter.external(best[i : i + 1])[0])
-            ends = interval(self.problem, best, i, error)
+            ends = interval(self.asked.problem, best, i, error)
             width = high[i] - low[i]
             at_end = min(best[i] - low[i], high[i] - best[i]) < 1e-6 * width
             remark = ""
@@ -397,9 +349,11 @@ class _Found:
                 f"this law explains the log poorly, it is {percent:.0f} % off: the parameters mean "
                 "little; try another law, motion or mapping"
             )
-        places = [i for i, one in enumerate(self.problem.layout.free) if "stribeck" in one.name]
+        places = [
+            i for i, one in enumerate(self.asked.problem.layout.free) if "stribeck" in one.name
+        ]
         if self.settings.motion == "imposed" and places:
-            share = self.velocity_noise_m_per_s / math.exp(best[places[0]])
+            share = self.asked.sizes.velocity_noise_m_per_s / math.exp(best[places[0]])
             if share > NOISY_SPEED:
                 out.append(
                     f"noise of the position makes the velocity uncertain by {100 * share:.2g} % of "
@@ -421,13 +375,14 @@ class _Found:
             notes.append("stopped before it was done: these are the best parameters so far")
         elif not converged:
             notes.append(f"not converged within {MOST_EVALUATIONS} evaluations")
+        notes.append(str(self.asked.excitation))
         if starts > 1:
             notes.append(f"{agreeing} of {starts} starts came to the same minimum")
         if known.window > 0:
-            rows = known.weight * len(self.problem.measured)
+            count = len(self.asked.problem.measured)
             notes.append(
-                f"residuals correlate over about {known.window} rows: {len(self.problem.measured)} "
-                f"rows tell as much as {rows:.0f} independent ones, which the errors allow for"
+                f"residuals correlate over about {known.window} rows: {count} rows tell as much as "
+                f"{known.weight * count:.0f} independent ones, which the errors allow for"
             )
         notes += [str(finding) for finding in self.log.findings]
         return notes

@@ -28,7 +28,7 @@ from breakaway.identification.uncertainty import (
     posterior,
     profile,
 )
-from breakaway.identification.verdicts import Estimate, Verdict
+from breakaway.identification.verdicts import Estimate, Excitation, Verdict
 from breakaway.logs.log import Array, Log
 
 
@@ -45,6 +45,7 @@ class Identification:
     law: Law
     settings: RunSettings
     spans: tuple[Span, ...]
+    excitation: Excitation
     estimates: tuple[Estimate, ...]
     fixed: Mapping[str, float]
     rms_error: float
@@ -261,6 +262,7 @@ def as_dict(found: Identification) -> dict[str, Any]:
         "asymmetric": found.law.asymmetric,
         "position_dependent": found.law.position_dependent,
         "motion": found.settings.motion,
+        "excitation": vars(found.excitation),
         "estimates": [vars(one) for one in found.estimates],
         "fixed": dict(found.fixed),
         "channel": found.channel,

@@ -76,6 +76,13 @@ class Excitation:
     noise_m: float
     both_directions: bool
 
+    def __str__(self) -> str:
+        return (
+            f"excited: {self.slow_speed_m_per_s:.3g} to {self.fast_speed_m_per_s:.3g} m/s, "
+            f"{self.reversals} reversals, {self.rests} rests that end in motion, presliding of "
+            f"{self.presliding_m:.2g} m against {self.noise_m:.2g} m of noise"
+        )
+
     @property
     def speed_ratio(self) -> float:
         """Fast over slow speed."""
