@@ -160,9 +160,15 @@ def test_identifiability_is_told_without_a_fit(rich: Log, rich_fit: Identificati
     assert report.excitation == found.excitation
     assert set(report.expected_error) == set(found.values)
     assert [one.parameter for one in report.held] == ["mass_kg"]
-    for name in ("coulomb_n", "stiffness_n_per_m"):
-        reached = found[name].standard_error / found[name].value
-        assert 0.2 < report.expected_error[name] / reached < 2.0
+    for name in ("coulomb_n", "stiffness_n_per_m"):  # no fit does better than the noise allows
+        assert 0.0 < report.expected_error[name] < found[name].standard_error / found[name].value
+
+
+def test_the_expected_error_of_an_offset_is_that_of_a_mean() -> None:
+    noise = 0.1 * np.random.default_rng(4).standard_normal(len(T_S))
+    log = log_of(0.05 * np.sin(7 * T_S), lambda v: 5.0 * np.sign(v) + noise)
+    expected = identifiability(log, law="coulomb").expected_error["offset_n"]
+    assert expected == pytest.approx(0.1 / np.sqrt(len(T_S)), rel=0.2)
 
 
 def test_what_a_log_can_not_tell_has_an_infinite_expected_error() -> None:
