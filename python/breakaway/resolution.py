@@ -6,6 +6,7 @@ from typing import Any
 
 from breakaway.design.pole_placement import pole_placement, residual_n
 from breakaway.scenario.controller import (
+    AnyController,
     FmVibration,
     Gains,
     Pid,
@@ -13,6 +14,7 @@ from breakaway.scenario.controller import (
     PolePlacement,
     TwoStep,
 )
+from breakaway.scenario.joint import AnyJoint, ElastoPlastic, Gms
 from breakaway.scenario.scenario import Scenario
 
 
@@ -65,9 +67,11 @@ def resolve(scenario: Scenario) -> Scenario:
     )
 
 
-def with_gains(scenario: Scenario) -> Pid | FmVibration | TwoStep:
-    """Give the controller with its gains as numbers."""
+def with_gains(scenario: Scenario) -> AnyController:
+    """Give the controller with its gains as numbers, if it has any."""
     controller = scenario.controller
+    if not isinstance(controller, Pid | FmVibration | TwoStep):
+        return controller
     if isinstance(controller, Pid):
         return controller.model_copy(update={"gains": given_gains(controller.gains, scenario)})
     update: dict[str, object] = {"pid": _pid_with_gains(controller.pid, scenario)}
@@ -99,19 +103,19 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
     """Values of a resolved scenario under the names of the core."""
     values = resolved.model_dump(warnings=False)  # a batch puts columns where numbers are
     timing, limits = values["timing"], values["limits"]
-    joint = values["joint"]
+    joint = _core_joint(resolved.joint, values["joint"])
     infinite = float("inf")
     controller = values["controller"]
+    _name_as_the_core(values)
     for gains in _gain_tables(controller):
         del gains["kind"]
     _leave_out_zero(controller.get("pid", controller), "derivative_filter_s")
-    _leave_out_zero(joint, "viscous_n_s_per_m")
     disturbance = values["disturbance"]
     law = {"kind": disturbance.pop("law")}
     if "bandwidth_hz" in disturbance:
         law["bandwidth_hz"] = disturbance.pop("bandwidth_hz")
     del timing["duration_s"]
-    release_position_m = joint["engagement_length_m"] - limits.pop("release_tolerance_m")
+    release_position_m = resolved.joint.engagement_length_m - limits.pop("release_tolerance_m")
     return {
         "extraction": {
             "joint": joint,
@@ -119,6 +123,8 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
             "reference": values["reference"],
             "disturbance": {"law": law, **disturbance},
             "actuator": values["actuator"],
+            "sensors": values["sensors"],
+            "watch": values["watch"],
             "controller": controller,
             "timing": timing,
         },
@@ -131,6 +137,31 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
     }
 
 
+def _name_as_the_core(values: dict[str, Any]) -> None:
+    """Sensors of the core have no units of their own; what is left out of a watch is infinite."""
+    for sensor in (values["sensors"] or {}).values():
+        for name in ("noise_rms", "quantum"):
+            unit = next(suffix for suffix in ("_m", "_n") if f"{name}{suffix}" in sensor)
+            sensor[name] = sensor.pop(f"{name}{unit}")
+    watch = values["watch"]
+    if watch and watch["frozen_max_s"] is None:
+        watch["frozen_max_s"] = float("inf")
+
+
+def _core_joint(joint: AnyJoint, values: dict[str, Any]) -> dict[str, Any]:
+    """Nest what the core nests: the laws that build on LuGre hold its numbers in a table."""
+    _leave_out_zero(values, "viscous_n_s_per_m")
+    if isinstance(joint, ElastoPlastic):
+        own = {"elastic_share": values.pop("elastic_share")}
+    elif isinstance(joint, Gms):
+        del values["stiffness_shares"], values["level_shares"]
+        own = {name: values.pop(name) for name in ("elements", "attraction_n_per_s")}
+        own["stiffness_shares"], own["level_shares"] = joint.all_shares()
+    else:
+        return values
+    return {"law": values.pop("law"), "friction": values, **own}
+
+
 def _leave_out_zero(values: dict[str, Any], name: str) -> None:
     """Say that there is none, where it is a number and zero: the core is faster without."""
     if isinstance(values.get(name), float) and values[name] == 0.0:
@@ -139,4 +170,5 @@ def _leave_out_zero(values: dict[str, Any], name: str) -> None:
 
 def _gain_tables(controller: dict[str, Any]) -> list[dict[str, Any]]:
     pid = controller.get("pid", controller)
-    return [pid["gains"]] + [controller[key] for key in ("vibration_gains",) if key in controller]
+    tables = [pid[key] for key in ("gains",) if key in pid]
+    return tables + [controller[key] for key in ("vibration_gains",) if key in controller]

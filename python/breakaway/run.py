@@ -81,6 +81,22 @@ class RunMetrics:
     """Velocity when the part came free, m/s."""
     saturation_time_s: float
     """Time during which the actuator could not deliver the command, s."""
+    supplied_work_j: float
+    """Work that the drives of the actuator supplied, J."""
+    actuator_loss_j: float
+    """Energy lost in the actuator's dampers and its contact, J; a contact still pressed at the end
+    counts as lost."""
+    rms_current_a: float
+    """Root of the mean square of the stack's current, A; 0 without a stack."""
+    stack_cycles: float
+    """Full strokes of the stack, out and back: the charge moved over twice the full charge."""
+    stack_loss_w: float
+    """Mean power that heats the stack, W: ``tan(delta) / (omega C) rms_current**2`` at 1 kHz."""
+    stack_tension_n: float
+    """Largest tension of the stack beyond its preload, N; below 0 where it was always pressed."""
+    stop_reason: float
+    """Why the watch stopped the controller: 0 not at all, 1 not a number, 2 the position jumped,
+    3 it was frozen, 4 the clock did not go on."""
     final_position_m: float
     """Position at the end, m."""
 

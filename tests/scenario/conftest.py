@@ -79,6 +79,23 @@ def example(model):
     return values
 
 
+def paired(scenario):
+    """Give what moves a feed a feed axis, and a feed axis what moves it."""
+    actuator, controller = (kind_in(scenario, name) for name in ("actuator", "controller"))
+    if controller in ("steady_feed", "vibrated_feed"):
+        if actuator != "feed_axis":
+            tip = example(bk.Piezo) if controller == "vibrated_feed" else {"kind": "rigid"}
+            scenario["actuator"] = {**example(bk.FeedAxis), "tip": tip}
+    elif actuator == "feed_axis":
+        scenario["controller"] = example(bk.SteadyFeed)
+    return scenario
+
+
+def kind_in(scenario, name):
+    table = scenario.get(name)
+    return table.get("kind") if isinstance(table, dict) else None
+
+
 @dataclass(frozen=True)
 class Site:
     """A field at its place in a scenario."""
@@ -109,18 +126,22 @@ class Site:
 
     def base(self):
         """A valid scenario, as plain values, that has the field's model in it."""
-        return copy.deepcopy(self.wrap(example(self.model)))
+        return self._scenario(example(self.model))
 
     def with_value(self, value):
-        return copy.deepcopy(self.wrap({**example(self.model), self.name: value}))
+        return self._scenario({**example(self.model), self.name: value})
 
     def without(self):
         values = example(self.model)
         values.pop(self.name, None)
-        return copy.deepcopy(self.wrap(values))
+        return self._scenario(values)
 
     def with_key(self, key, value):
-        return copy.deepcopy(self.wrap({**example(self.model), key: value}))
+        return self._scenario({**example(self.model), key: value})
+
+    def _scenario(self, values):
+        scenario = copy.deepcopy(self.wrap(values))
+        return paired(scenario) if self.path[0] in ("actuator", "controller") else scenario
 
 
 def walk(model=bk.Scenario, path=(), label="", wrap=lambda values: values):

@@ -1,5 +1,6 @@
 //! Many runs of one extraction: in lanes, on threads, each with numbers and draws of its own.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,11 +8,14 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use breakaway_core::disturbance::Factors;
 use breakaway_core::metrics::{Groups, Limits};
+use breakaway_core::real::Block;
 use breakaway_core::reference::{Reference, Setpoint};
+use breakaway_core::sensor::Noise;
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
 
-use crate::draws::HeldDraws;
+use crate::draws::{HeldDraws, noise};
 use crate::figures::Figure;
 use crate::instructions::{Instructions, Kernel};
 use crate::lanes::Wide;
@@ -162,7 +166,9 @@ impl Wanted {
     /// What must be counted. An outcome needs a force or a jump only where it has a limit.
     fn groups(&self, batch: &Batch) -> Groups {
         let needs = |needs: Groups, figure: &Figure| needs.with(figure.needs);
-        let groups = self.figures.iter().fold(Groups::NONE, needs);
+        let ends = batch.common.limits.after_release_s.is_finite();
+        let groups = Groups { events: ends, ..Groups::NONE };
+        let groups = self.figures.iter().fold(groups, needs);
         if !self.outcome {
             return groups;
         }
@@ -237,9 +243,18 @@ impl Kernel for InLanes<'_> {
         let mut moving =
             Moving { state: ExtractionState::at_rest(), metrics: Metrics::new(), draws };
         let setpoints = Setpoints::of(&extraction);
-        let lockstep = Lockstep { samples: job.samples, limits: &limits, setpoints, groups, going };
+        let lockstep = Lockstep {
+            samples: job.samples,
+            seed: job.seed,
+            runs: std::array::from_fn(|lane| batch.runs[batch.at(&range, lane)]),
+            limits: &limits,
+            setpoints,
+            groups,
+            going,
+        };
         let mut n = 0;
-        if let Some(plain) = plain_kinds(&extraction) {
+        let ends_early = (0..N).any(|lane| limits.after_release_s.extract(lane).is_finite());
+        if let (Some(plain), false) = (plain_kinds(&extraction), ends_early) {
             n = lockstep.trust(&plain, &mut moving);
         }
         lockstep.look(&extraction, &mut moving, n);
@@ -267,8 +282,9 @@ struct Moving<V, const N: usize> {
 }
 
 impl<V: Wide, const N: usize> Moving<V, N> {
-    fn all_left(&self) -> bool {
-        (0..N).all(|lane| self.metrics.bounded.extract(lane) == 0.0)
+    fn all_ended(&self) -> bool {
+        let goes_on = V::flag(self.metrics.goes_on());
+        (0..N).all(|lane| goes_on.extract(lane) == 0.0)
     }
 
     /// Whether every run is within its bounds, after samples that were counted unseen.
@@ -280,25 +296,27 @@ impl<V: Wide, const N: usize> Moving<V, N> {
 }
 
 /// What runs that go through the step together have in common, beside the extraction.
-struct Lockstep<'a, V> {
+struct Lockstep<'a, V, const N: usize> {
     samples: u64,
+    seed: u64,
+    runs: [u64; N],
     limits: &'a Limits<V>,
     setpoints: Setpoints<V>,
     groups: Groups,
     going: &'a AtomicBool,
 }
 
-impl<V: Wide> Lockstep<'_, V> {
+impl<V: Wide, const N: usize> Lockstep<'_, V, N> {
     /// Takes blocks of samples without looking at the bounds, until a block has left them; undoes that
     /// one, and gives the number of its first sample. Extractions of the commonest kinds only: for
     /// each way to step, everything is compiled once for each kind of instructions.
     #[inline(always)]
-    fn trust<const N: usize>(&self, plain: &Extraction<V>, moving: &mut Moving<V, N>) -> u64 {
+    fn trust(&self, plain: &Extraction<V>, moving: &mut Moving<V, N>) -> u64 {
         let mut n = 0;
         while n < self.samples && self.going.load(Ordering::Relaxed) {
             let start = *moving;
             let end = self.samples.min(n + BLOCK);
-            self.advance::<N, false>(plain, moving, n..end);
+            self.advance_plain(plain, moving, n..end);
             if !moving.none_left(self.limits) {
                 *moving = start;
                 break;
@@ -310,11 +328,11 @@ impl<V: Wide> Lockstep<'_, V> {
 
     /// Takes blocks of samples, looking at the bounds at each of them, until all runs have ended.
     #[inline(always)]
-    fn look<const N: usize>(&self, any: &Extraction<V>, moving: &mut Moving<V, N>, first: u64) {
+    fn look(&self, any: &Extraction<V>, moving: &mut Moving<V, N>, first: u64) {
         let mut n = first;
-        while n < self.samples && self.going.load(Ordering::Relaxed) && !moving.all_left() {
+        while n < self.samples && self.going.load(Ordering::Relaxed) && !moving.all_ended() {
             let end = self.samples.min(n + BLOCK);
-            self.advance::<N, true>(any, moving, n..end);
+            self.advance(any, moving, n..end);
             n = end;
         }
     }
@@ -322,31 +340,78 @@ impl<V: Wide> Lockstep<'_, V> {
     /// What is read and what moves at every sample is copied first, so that it is known to be this
     /// function's own, and what does not change is computed once.
     #[inline(always)]
-    fn advance<const N: usize, const LOOK: bool>(
+    fn advance_plain(
         &self,
-        extraction: &Extraction<V>,
+        plain: &Extraction<V>,
         moving: &mut Moving<V, N>,
         samples: Range<u64>,
     ) {
-        let (extraction, limits) = (*extraction, *self.limits);
+        let (extraction, limits) = (*plain, *self.limits);
         let Moving { mut state, mut metrics, .. } = *moving;
         let mut n = samples.start;
         while n < samples.end {
             let redraw = moving.draws.redraw_after(n);
-            let disturbance = V::gather(moving.draws.held());
-            let factors = extraction.disturbance.factors(Draws { disturbance });
+            let factors = disturbed(&extraction, moving.draws.held());
             let end = samples.end.min(redraw);
             while n < end {
-                let sample = extraction.follow(&mut state, &self.setpoints.at(n), &factors);
-                if LOOK {
-                    metrics.update(self.groups, &limits, &sample);
-                } else {
-                    metrics.update_unseen(self.groups, &limits, &sample);
-                }
+                let setpoint = self.setpoints.at(n);
+                let none = Noise::none();
+                let sample = extraction.follow::<false>(&mut state, &setpoint, &factors, &none);
+                metrics.update_unseen(self.groups, &limits, &sample);
                 n += 1;
             }
         }
         (moving.state, moving.metrics) = (state, metrics);
+    }
+
+    /// Any kinds: what moves stays in memory, where blocks compiled on their own reach it.
+    #[inline(always)]
+    fn advance(&self, any: &Extraction<V>, moving: &mut Moving<V, N>, samples: Range<u64>) {
+        let limits = *self.limits;
+        let mut n = samples.start;
+        while n < samples.end {
+            let redraw = moving.draws.redraw_after(n);
+            let factors = disturbed(any, moving.draws.held());
+            let end = samples.end.min(redraw);
+            while n < end {
+                let noise = match any.sensors {
+                    Some(_) => {
+                        let (seed, runs) = (self.seed, &self.runs);
+                        V::apart(NoiseAt { seed, runs, sample: n, number: PhantomData })
+                    }
+                    None => Noise::none(),
+                };
+                let setpoint = self.setpoints.at(n);
+                let sample = any.follow::<true>(&mut moving.state, &setpoint, &factors, &noise);
+                moving.metrics.update(self.groups, &limits, &sample);
+                n += 1;
+            }
+        }
+    }
+}
+
+/// The factors of the held draws of all lanes.
+#[inline(always)]
+fn disturbed<V: Wide>(extraction: &Extraction<V>, held: &[f64]) -> Factors<V> {
+    let draws = Draws { disturbance: V::gather(held), noise: Noise::none() };
+    extraction.disturbance.factors(draws)
+}
+
+/// The noise of all lanes at a sample.
+struct NoiseAt<'a, V, const N: usize> {
+    seed: u64,
+    runs: &'a [u64; N],
+    sample: u64,
+    number: PhantomData<V>,
+}
+
+impl<V: Wide, const N: usize> Block for NoiseAt<'_, V, N> {
+    type Output = Noise<V>;
+
+    #[inline(always)]
+    fn compute(self) -> Noise<V> {
+        let [position, force] = noise(self.seed, self.runs, self.sample);
+        Noise { position: V::gather(&position), force: V::gather(&force) }
     }
 }
 

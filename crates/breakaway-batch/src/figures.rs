@@ -3,6 +3,8 @@
 use breakaway_core::metrics::Groups;
 
 use crate::run::{Job, Run};
+use breakaway_core::actuator::{Actuator, FeedAxis, Piezo, Tip};
+use std::f64::consts::PI;
 
 /// A figure of a finished run.
 #[derive(Clone, Copy)]
@@ -26,6 +28,8 @@ const IMPACTS: Groups = Groups { impacts: true, ..NONE };
 const JUMP: Groups = Groups { jump: true, ..NONE };
 const END: Groups = Groups { end: true, ..NONE };
 const FORCE_AND_END: Groups = FORCE.with(END);
+const EFFORT: Groups = Groups { effort: true, ..NONE };
+const EFFORT_AND_TIME: Groups = EFFORT.with(TIME);
 const EVENTS: Groups = Groups { events: true, ..NONE };
 
 /// Every figure.
@@ -98,8 +102,46 @@ pub const FIGURES: &[Figure] = &[
         },
     },
     Figure { name: "saturation_time_s", needs: FORCE, value: |_, run| run.metrics.saturated_s },
+    Figure { name: "supplied_work_j", needs: EFFORT, value: |_, run| run.metrics.supplied_j },
+    Figure { name: "actuator_loss_j", needs: EFFORT, value: |_, run| run.metrics.actuator_loss_j },
+    Figure {
+        name: "rms_current_a",
+        needs: EFFORT_AND_TIME,
+        value: |_, run| (run.metrics.current_square_a2_s / run.metrics.time_s).sqrt(),
+    },
+    Figure { name: "stack_cycles", needs: EFFORT, value: stack_cycles },
+    Figure { name: "stack_loss_w", needs: EFFORT_AND_TIME, value: stack_loss_w },
+    Figure {
+        name: "stack_tension_n",
+        needs: EFFORT,
+        value: |_, run| known_time(run.metrics.stack_tension_n),
+    },
+    Figure { name: "stop_reason", needs: END, value: |_, run| run.metrics.stop_reason },
     Figure { name: "final_position_m", needs: END, value: |_, run| run.metrics.end_position_m },
 ];
+
+/// The stack of an extraction, if it has one.
+fn stack(job: &Job) -> Option<Piezo<f64>> {
+    match job.extraction.actuator {
+        Actuator::FeedAxis(FeedAxis { tip: Tip::Piezo(piezo), .. }) => Some(piezo),
+        _ => None,
+    }
+}
+
+/// ∫ |I| dt / (2 C V_max): full strokes out and back.
+fn stack_cycles(job: &Job, run: &Run) -> f64 {
+    stack(job).map_or(f64::NAN, |piezo| {
+        run.metrics.charge_c / (2.0 * piezo.capacitance_f * piezo.voltage_max_v)
+    })
+}
+
+/// tan δ / (ω C) · I_rms² in W at 1 kHz: what heats the stack, to first order.
+fn stack_loss_w(job: &Job, run: &Run) -> f64 {
+    stack(job).map_or(f64::NAN, |piezo| {
+        let resistance_ohm = piezo.loss_tangent / (2000.0 * PI * piezo.capacitance_f);
+        resistance_ohm * run.metrics.current_square_a2_s / run.metrics.time_s
+    })
+}
 
 /// ½ k_e z² in J.
 fn stored_in_bristles_j(job: &Job, run: &Run) -> f64 {

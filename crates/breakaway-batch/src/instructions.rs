@@ -86,7 +86,7 @@ impl Instructions {
     /// Runs a kernel.
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            Kind::Portable => kernel.run::<Lanes<f64, PORTABLE_LANES>, PORTABLE_LANES>(),
+            Kind::Portable => kernel.run::<Lanes<f64>, PORTABLE_LANES>(),
             // SAFETY: `Instructions` are made only for a processor that has them.
             #[cfg(target_arch = "x86_64")]
             #[allow(unsafe_code)]
@@ -102,12 +102,12 @@ impl Instructions {
 #[target_feature(enable = "avx2,fma")]
 #[allow(unsafe_code)]
 unsafe fn with_avx2<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Lanes<avx2::Four, 4>, AVX2_LANES>()
+    kernel.run::<Lanes<avx2::Four>, AVX2_LANES>()
 }
 
 #[cfg(avx512)]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
 #[allow(unsafe_code)]
 unsafe fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Lanes<avx512::Eight, 4>, AVX512_LANES>()
+    kernel.run::<Lanes<avx512::Eight>, AVX512_LANES>()
 }

@@ -3,11 +3,14 @@
 use breakaway_core::actuator::Actuator;
 use breakaway_core::control::{Controller, Pid};
 use breakaway_core::extraction::{Sample, Timing};
-use breakaway_core::joint::{Joint, Lugre};
+use breakaway_core::joint::Joint;
 use breakaway_core::metrics::{Groups, Limits};
+use breakaway_core::sensor::Noise;
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome, Real};
 
-use crate::draws::HeldDraws;
+use std::ops::Range;
+
+use crate::draws::{HeldDraws, noise};
 
 /// The names of a trace's columns.
 pub const TRACE_COLUMNS: [&str; 7] = [
@@ -101,14 +104,18 @@ pub(crate) fn plain_kinds<R: Real>(extraction: &Extraction<R>) -> Option<Extract
     let Extraction { joint, controller, actuator, timing, .. } = *extraction;
     match (joint, controller, actuator) {
         (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
-            if joint.viscous_n_s_per_m.is_none()
+            if joint.is_plain()
+                && extraction.sensors.is_none()
+                && extraction.watch.is_none()
                 && pid.is_plain()
                 && timing.is_every_period_once() =>
         {
             Some(Extraction {
-                joint: Joint::Lugre(Lugre { viscous_n_s_per_m: None, ..joint }),
+                joint: Joint::Lugre(joint.plain()),
                 controller: Controller::Pid(Pid::plain(pid.gains)),
                 actuator: Actuator::Ideal,
+                sensors: None,
+                watch: None,
                 timing: Timing::every_period_once(timing.control_period_s),
                 ..*extraction
             })
@@ -130,31 +137,30 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
     };
     let per_check = (STEPS_PER_CHECK / u64::from(job.extraction.timing.steps_per_period)).max(1);
     let mut n = 0;
-    while n < job.samples && progress.metrics.bounded == 1.0 {
+    while n < job.samples && progress.metrics.goes_on() {
         let redraw = draws.redraw_after(n);
-        let draws = Draws { disturbance: draws.held()[0] };
+        let disturbance = draws.held()[0];
         let check = (n / per_check + 1) * per_check;
-        let left = if n == next_row || n == last_row {
-            let sample = progress.take_one(job, draws);
+        let last = if n == next_row || n == last_row {
+            let sample = progress.take_one(job, disturbance, n);
             n += 1;
             let bounded = progress.metrics.bounded == 1.0;
             if n == next_row + 1 && bounded {
                 record(&mut trace, &sample);
                 next_row += job.trace_every;
             }
-            if n == job.samples && bounded {
-                record(&mut trace, &job.end_of(&sample, &progress.state));
-            }
-            (!bounded).then_some(sample)
+            (!progress.metrics.goes_on() || n == job.samples).then_some(sample)
         } else {
             let end = job.samples.min(redraw).min(next_row).min(last_row).min(check);
-            let left = progress.advance(job, draws, end - n);
-            n = end;
-            left
+            let (taken, last) = progress.advance(job, disturbance, n..end);
+            n = taken;
+            last
         };
-        if let Some(sample) = left {
+        if let Some(sample) = last {
             if job.trace_every != 0 {
-                record(&mut trace, &sample);
+                let end = progress.metrics.bounded == 1.0;
+                let row = if end { job.end_of(&sample, &progress.state) } else { sample };
+                record(&mut trace, &row);
             }
         }
         if n == check {
@@ -172,30 +178,39 @@ struct Progress {
 }
 
 impl Progress {
-    /// Takes `count` samples with one draw; stops at a sample that leaves the bounds, and gives it.
-    /// What moves at every sample is kept in local variables, and so in registers.
+    /// Takes samples with one draw of the disturbance; stops at one that ends the run, and gives it,
+    /// after the number of the next. What moves at every sample is kept in local variables, and so
+    /// in registers.
     #[inline(always)]
-    fn advance(&mut self, job: &Job, draws: Draws<f64>, count: u64) -> Option<Sample<f64>> {
+    fn advance(
+        &mut self,
+        job: &Job,
+        disturbance: f64,
+        samples: Range<u64>,
+    ) -> (u64, Option<Sample<f64>>) {
         let (extraction, limits) = (job.extraction, job.limits);
         let (mut state, mut metrics) = (self.state, self.metrics);
         metrics.bounded = 1.0; // as it is; said here, it need not be asked at every sample
+        metrics.over = 0.0; // likewise
         let mut last = None;
-        for _ in 0..count {
-            let sample = extraction.step(&mut state, draws);
+        let mut n = samples.start;
+        while n < samples.end {
+            let sample = extraction.step(&mut state, job.draws(disturbance, n));
             metrics.update(Groups::ALL, &limits, &sample);
-            if metrics.bounded == 0.0 {
+            n += 1;
+            if !metrics.goes_on() {
                 last = Some(sample);
                 break;
             }
         }
         (self.state, self.metrics) = (state, metrics);
-        last
+        (n, last)
     }
 
     /// Takes one sample and gives it.
     #[inline(always)]
-    fn take_one(&mut self, job: &Job, draws: Draws<f64>) -> Sample<f64> {
-        let sample = job.extraction.step(&mut self.state, draws);
+    fn take_one(&mut self, job: &Job, disturbance: f64, n: u64) -> Sample<f64> {
+        let sample = job.extraction.step(&mut self.state, job.draws(disturbance, n));
         self.metrics.update(Groups::ALL, &job.limits, &sample);
         sample
     }
@@ -254,9 +269,19 @@ impl Job {
         Self { extraction, limits, ..*self }
     }
 
+    /// The draws of a sample.
+    #[inline(always)]
+    fn draws(&self, disturbance: f64, sample: u64) -> Draws<f64> {
+        if self.extraction.sensors.is_none() {
+            return Draws { disturbance, ..Draws::none() };
+        }
+        let [[position], [force]] = noise(self.seed, &[self.run], sample);
+        Draws { disturbance, noise: Noise { position, force } }
+    }
+
     /// The state after the last sample, as a row.
     fn end_of(&self, last: &Sample<f64>, state: &ExtractionState<f64>) -> Sample<f64> {
-        let time_s = self.samples as f64 * last.period_s;
+        let time_s = state.sampling.samples * last.period_s;
         Sample {
             time_s,
             reference_m: self.extraction.reference.sample(time_s).position_m,

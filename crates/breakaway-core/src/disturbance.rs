@@ -1,12 +1,22 @@
 //! What nobody knows about the joint force, as a random factor on it.
 
 use crate::real::Real;
+use crate::sensor::Noise;
 
 /// The random numbers of one step, drawn outside the core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draws<R> {
     /// w, drawn by the disturbance's law and held by the caller for its hold time.
     pub disturbance: R,
+    /// Of the sensors.
+    pub noise: Noise<R>,
+}
+
+impl<R: Real> Draws<R> {
+    /// Nothing random.
+    pub fn none() -> Self {
+        Self { disturbance: R::zero(), noise: Noise::none() }
+    }
 }
 
 /// What the joint is multiplied by during a step.

@@ -92,6 +92,7 @@ impl<R: Real, const P: usize> Neg for Dual<R, P> {
 
 impl<R: Real, const P: usize> Real for Dual<R, P> {
     type Mask = R::Mask;
+    const ROUND: f64 = R::ROUND;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {

@@ -1,13 +1,14 @@
 //! The block diagram of an extraction: one named call per block (paper, figure 5).
 
-use crate::actuator::Actuator;
-use crate::control::{Controller, ControllerState, Measurement};
+use crate::actuator::{Actuator, ActuatorState, Command, Effort};
+use crate::control::{Controller, ControllerState, Measurement, Watch, WatchState};
 use crate::disturbance::{Disturbance, Draws, Factors};
 use crate::joint::Joint;
 use crate::parameters::parameters;
 use crate::plant::{Integrator, Plant, PlantState};
-use crate::real::Real;
+use crate::real::{Block, Real};
 use crate::reference::{Reference, Setpoint};
+use crate::sensor::{Noise, Sensors, SensorsState};
 
 parameters! {
     /// The part that is extracted.
@@ -60,7 +61,7 @@ impl<R> Timing<R> {
 /// use breakaway_core::{Draws, ExtractionState};
 /// let extraction = paper_as_computed();
 /// let mut state = ExtractionState::at_rest();
-/// let sample = extraction.step(&mut state, Draws { disturbance: 0.0 });
+/// let sample = extraction.step(&mut state, Draws::none());
 /// assert_eq!((sample.time_s, sample.applied_force_n), (0.0, 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,20 +77,25 @@ pub struct Extraction<R> {
     pub disturbance: Disturbance<R>,
     /// What pushes.
     pub actuator: Actuator<R>,
+    /// What the controller sees through, if not what is.
+    pub sensors: Option<Sensors<R>>,
+    /// What stops the controller where its sensors can not be right, if anything does.
+    pub watch: Option<Watch<R>>,
     /// What decides how hard.
     pub controller: Controller<R>,
     /// How the loop runs.
     pub timing: Timing<R>,
 }
 
-parameters! {
-    /// The clock and the delayed force.
-    pub struct LoopState {
-        /// Samples so far.
-        pub samples,
-        /// The command that waits for the next period, N.
-        pub waiting_command_n,
-    }
+/// The clock and the delayed command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopState<R> {
+    /// Samples so far.
+    pub samples: R,
+    /// The command that waits for the next period.
+    pub waiting: Command<R>,
+    /// F at the last sample, N: what a force sensor sees.
+    pub force_n: R,
 }
 
 /// What moves during an extraction.
@@ -97,6 +103,12 @@ parameters! {
 pub struct ExtractionState<R> {
     /// The part and its joint.
     pub plant: PlantState<R>,
+    /// What pushes.
+    pub actuator: ActuatorState<R>,
+    /// What is seen.
+    pub sensors: SensorsState<R>,
+    /// What is watched.
+    pub watch: WatchState<R>,
     /// The controller.
     pub controller: ControllerState<R>,
     /// The loop.
@@ -107,10 +119,14 @@ impl<R: Real> ExtractionState<R> {
     /// On the seat, at rest, before the first sample.
     pub fn at_rest() -> Self {
         let plant = PlantState::at_rest();
+        let zero = R::zero();
         Self {
             plant,
+            actuator: ActuatorState::at_rest(),
+            sensors: SensorsState::at_rest(),
+            watch: WatchState::at_rest(),
             controller: ControllerState::at_rest(plant.position_m),
-            sampling: LoopState { samples: R::zero(), waiting_command_n: R::zero() },
+            sampling: LoopState { samples: zero, waiting: Command::force(zero), force_n: zero },
         }
     }
 
@@ -118,42 +134,68 @@ impl<R: Real> ExtractionState<R> {
     pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ExtractionState<S> {
         ExtractionState {
             plant: self.plant.map(f),
+            actuator: self.actuator.map(f),
+            sensors: self.sensors.map(f),
+            watch: self.watch.map(f),
             controller: self.controller.map(f),
-            sampling: self.sampling.map(f),
+            sampling: LoopState {
+                samples: f("samples", self.sampling.samples),
+                waiting: self.sampling.waiting.map(f),
+                force_n: f("force_n", self.sampling.force_n),
+            },
         }
     }
 }
 
-parameters! {
-    /// One control period: the state at its sample, the forces during it, the state after it.
-    pub struct Sample {
-        /// Time of the sample, s.
-        pub time_s,
-        /// Control period, s.
-        pub period_s,
-        /// r at the sample, m.
-        pub reference_m,
-        /// dr/dt at the sample, m/s.
-        pub reference_rate_m_per_s,
-        /// x at the sample, m.
-        pub position_m,
-        /// v at the sample, m/s.
-        pub velocity_m_per_s,
-        /// z at the sample, m.
-        pub bristle_m,
-        /// What the controller asked for, N; with a delay, one period ago.
-        pub command_n,
-        /// F during the period, N.
-        pub applied_force_n,
-        /// R during the period, N: the mean, disturbance included.
-        pub joint_force_n,
-        /// x one period later, m.
-        pub next_position_m,
-        /// v one period later, m/s.
-        pub next_velocity_m_per_s,
-        /// z one period later, m.
-        pub next_bristle_m,
-    }
+/// One control period: the state at its sample, the forces during it, the state after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<R> {
+    /// Time of the sample, s.
+    pub time_s: R,
+    /// Control period, s.
+    pub period_s: R,
+    /// r at the sample, m.
+    pub reference_m: R,
+    /// Speed that was asked of the part, m/s: that of the reference, or of the feed.
+    pub commanded_m_per_s: R,
+    /// x at the sample, m.
+    pub position_m: R,
+    /// v at the sample, m/s.
+    pub velocity_m_per_s: R,
+    /// z at the sample, m.
+    pub bristle_m: R,
+    /// What the controller asked for, N; with a delay, one period ago.
+    pub command_n: R,
+    /// F during the period, N: the mean.
+    pub applied_force_n: R,
+    /// Largest F of an integration step in it, N.
+    pub largest_force_n: R,
+    /// R during the period, N: the mean, disturbance included.
+    pub joint_force_n: R,
+    /// ∫ F dx over the period, J.
+    pub work_j: R,
+    /// ∫ R dx over the period, J.
+    pub joint_work_j: R,
+    /// What the actuator took.
+    pub effort: Effort<R>,
+    /// Why the watch has stopped the controller; 0 while it has not.
+    pub stop_reason: R,
+    /// x one period later, m.
+    pub next_position_m: R,
+    /// v one period later, m/s.
+    pub next_velocity_m_per_s: R,
+    /// z one period later, m.
+    pub next_bristle_m: R,
+}
+
+/// What went through the part in a control period.
+struct Period<R> {
+    force_n: R,
+    largest_force_n: R,
+    joint_force_n: R,
+    work_j: R,
+    joint_work_j: R,
+    effort: Effort<R>,
 }
 
 impl<R: Real> Extraction<R> {
@@ -165,6 +207,8 @@ impl<R: Real> Extraction<R> {
             reference: self.reference.map(f),
             disturbance: self.disturbance.map(f),
             actuator: self.actuator.map(f),
+            sensors: self.sensors.as_ref().map(|sensors| sensors.map(f)),
+            watch: self.watch.as_ref().map(|watch| watch.map(f)),
             controller: self.controller.map(f),
             timing: Timing {
                 control_period_s: f("control_period_s", self.timing.control_period_s),
@@ -180,72 +224,210 @@ impl<R: Real> Extraction<R> {
     pub fn step(&self, state: &mut ExtractionState<R>, draws: Draws<R>) -> Sample<R> {
         let setpoint = self.reference.sample(state.sampling.samples * self.timing.control_period_s);
         state.sampling.samples = state.sampling.samples + R::one();
-        self.follow(state, &setpoint, &self.disturbance.factors(draws))
+        let factors = self.disturbance.factors(draws);
+        self.follow::<false>(state, &setpoint, &factors, &draws.noise)
     }
 
     /// One control period towards a setpoint that the caller has sampled from the reference, once
     /// for many runs that share it, and with factors that the caller has computed when they were
-    /// drawn. The clock of the state stands still.
+    /// drawn. The clock of the state stands still. With `APART`, what depends on kinds is computed in
+    /// functions of their own ([`Real::apart`]).
     #[inline(always)]
-    pub fn follow(
+    pub fn follow<const APART: bool>(
         &self,
         state: &mut ExtractionState<R>,
         setpoint: &Setpoint<R>,
         factors: &Factors<R>,
+        noise: &Noise<R>,
     ) -> Sample<R> {
-        let period_s = self.timing.control_period_s;
         let before = state.plant;
-        let measured = Measurement {
-            reference_m: setpoint.position_m,
-            reference_rate_m_per_s: setpoint.rate_m_per_s,
-            position_m: before.position_m,
-            velocity_m_per_s: before.velocity_m_per_s,
-            period_s,
-            range: self.actuator.range(),
-        };
-        let decided = self.controller.step(&mut state.controller, &measured);
-        let command_n = self.delay(&mut state.sampling, decided);
-        let applied_force_n = self.actuator.force(command_n);
-        let joint_force_n = self.move_plant(&mut state.plant, applied_force_n, factors);
+        let measured = self.measure(state, setpoint, noise);
+        let decided = apart::<R, _, APART>(Deciding { loop_: self, state, measured: &measured });
+        let command = self.delay(&mut state.sampling, decided);
+        let period =
+            apart::<R, _, APART>(Moving { loop_: self, state, command: &command, factors });
+        state.sampling.force_n = period.force_n;
         Sample {
             time_s: setpoint.time_s,
-            period_s,
+            period_s: self.timing.control_period_s,
             reference_m: setpoint.position_m,
-            reference_rate_m_per_s: setpoint.rate_m_per_s,
+            commanded_m_per_s: self.controller.commanded_speed(setpoint, &command),
             position_m: before.position_m,
             velocity_m_per_s: before.velocity_m_per_s,
             bristle_m: before.bristle_m,
-            command_n,
-            applied_force_n,
-            joint_force_n,
+            command_n: command.force_n,
+            applied_force_n: period.force_n,
+            largest_force_n: period.largest_force_n,
+            joint_force_n: period.joint_force_n,
+            work_j: period.work_j,
+            joint_work_j: period.joint_work_j,
+            effort: period.effort,
+            stop_reason: state.watch.reason,
             next_position_m: state.plant.position_m,
             next_velocity_m_per_s: state.plant.velocity_m_per_s,
             next_bristle_m: state.plant.bristle_m,
         }
     }
 
+    /// What the controller gets to see.
     #[inline(always)]
-    fn delay(&self, sampling: &mut LoopState<R>, decided_n: R) -> R {
-        if !self.timing.one_sample_delay {
-            return decided_n;
+    fn measure(
+        &self,
+        state: &mut ExtractionState<R>,
+        setpoint: &Setpoint<R>,
+        noise: &Noise<R>,
+    ) -> Measurement<R> {
+        let period_s = self.timing.control_period_s;
+        let (x, force) = (state.plant.position_m, state.sampling.force_n);
+        let (position_m, force_n) = match &self.sensors {
+            Some(Sensors { position, force: load }) => (
+                position.read(&mut state.sensors.position, x, noise.position, period_s),
+                load.read(&mut state.sensors.force, force, noise.force, period_s),
+            ),
+            None => (x, force),
+        };
+        Measurement {
+            reference_m: setpoint.position_m,
+            reference_rate_m_per_s: setpoint.rate_m_per_s,
+            position_m,
+            velocity_m_per_s: state.plant.velocity_m_per_s,
+            force_n,
+            period_s,
+            range: self.actuator.range(),
         }
-        core::mem::replace(&mut sampling.waiting_command_n, decided_n)
     }
 
-    /// Integrates over one period with a constant force; gives the mean joint force in N.
+    /// The controller's command, unless the watch has stopped it.
     #[inline(always)]
-    fn move_plant(&self, state: &mut PlantState<R>, force_n: R, factors: &Factors<R>) -> R {
-        let plant =
-            Plant { joint: &self.joint, mass_kg: self.part.mass_kg, force_n, factors: *factors };
-        let Timing { integrator, steps_per_period: steps, control_period_s, .. } = self.timing;
-        if steps == 1 {
-            return plant.step(integrator, state, control_period_s);
+    fn decide(&self, state: &mut ExtractionState<R>, measured: &Measurement<R>) -> Command<R> {
+        let decided = self.controller.step(&mut state.controller, measured);
+        let Some(watch) = &self.watch else {
+            return decided;
+        };
+        let zero = R::zero();
+        let last = &state.sampling.waiting;
+        let pushing = zero.lt(last.force_n)
+            | zero.lt(last.feed_m_per_s)
+            | zero.lt(last.stack_share);
+        let trusted = watch.trusts(&mut state.watch, measured, pushing);
+        if !self.timing.one_sample_delay {
+            state.sampling.waiting = decided;
         }
-        let share = R::constant(1.0 / f64::from(steps));
-        let mut sum = R::zero();
-        for _ in 0..steps {
-            sum = sum + plant.step(integrator, state, control_period_s * share);
+        Command {
+            force_n: R::select(trusted, decided.force_n, zero),
+            feed_m_per_s: R::select(trusted, decided.feed_m_per_s, zero),
+            stack_share: R::select(trusted, decided.stack_share, zero),
         }
-        sum * share
     }
+
+    #[inline(always)]
+    fn delay(&self, sampling: &mut LoopState<R>, decided: Command<R>) -> Command<R> {
+        if !self.timing.one_sample_delay {
+            return decided;
+        }
+        core::mem::replace(&mut sampling.waiting, decided)
+    }
+
+    /// Integrates over one period with a command held.
+    #[inline(always)]
+    fn move_plant(
+        &self,
+        state: &mut ExtractionState<R>,
+        command: &Command<R>,
+        factors: &Factors<R>,
+    ) -> Period<R> {
+        let Timing { integrator, steps_per_period: steps, control_period_s, .. } = self.timing;
+        let (zero, share) = (R::zero(), R::constant(1.0 / f64::from(steps)));
+        let h = if steps == 1 { control_period_s } else { control_period_s * share };
+        let mut sum = Period {
+            force_n: zero,
+            largest_force_n: zero,
+            joint_force_n: zero,
+            work_j: zero,
+            joint_work_j: zero,
+            effort: Effort::none(),
+        };
+        for _ in 0..steps {
+            let step = self.move_once(state, command, factors, integrator, h);
+            if steps == 1 {
+                return step;
+            }
+            sum.force_n = sum.force_n + step.force_n;
+            sum.largest_force_n = step.largest_force_n.max(sum.largest_force_n);
+            sum.joint_force_n = sum.joint_force_n + step.joint_force_n;
+            sum.work_j = sum.work_j + step.work_j;
+            sum.joint_work_j = sum.joint_work_j + step.joint_work_j;
+            sum.effort = sum.effort.and(&step.effort);
+        }
+        Period { force_n: sum.force_n * share, joint_force_n: sum.joint_force_n * share, ..sum }
+    }
+
+    /// One integration step: the actuator drives, the plant solves, the actuator yields.
+    #[inline(always)]
+    fn move_once(
+        &self,
+        state: &mut ExtractionState<R>,
+        command: &Command<R>,
+        factors: &Factors<R>,
+        integrator: Integrator,
+        h: R,
+    ) -> Period<R> {
+        let part_m = state.plant.position_m;
+        let driven = self.actuator.drive(&mut state.actuator, command, part_m, h);
+        let plant = Plant {
+            joint: &self.joint,
+            mass_kg: self.part.mass_kg,
+            push: driven.push,
+            factors: *factors,
+        };
+        let moved = plant.step(integrator, &mut state.plant, h);
+        let (push, v) = (moved.push_force_n, moved.mean_velocity_m_per_s);
+        let travel = v * h;
+        Period {
+            force_n: push,
+            largest_force_n: push.abs(),
+            joint_force_n: moved.joint_force_n,
+            work_j: push * travel,
+            joint_work_j: moved.joint_force_n * travel,
+            effort: self.actuator.settle(&mut state.actuator, &driven, push, v, h),
+        }
+    }
+}
+
+/// The controller's part of a period.
+struct Deciding<'a, R> {
+    loop_: &'a Extraction<R>,
+    state: &'a mut ExtractionState<R>,
+    measured: &'a Measurement<R>,
+}
+
+impl<R: Real> Block for Deciding<'_, R> {
+    type Output = Command<R>;
+
+    #[inline(always)]
+    fn compute(self) -> Command<R> {
+        self.loop_.decide(self.state, self.measured)
+    }
+}
+
+/// The part of a period in which things move.
+struct Moving<'a, R> {
+    loop_: &'a Extraction<R>,
+    state: &'a mut ExtractionState<R>,
+    command: &'a Command<R>,
+    factors: &'a Factors<R>,
+}
+
+impl<R: Real> Block for Moving<'_, R> {
+    type Output = Period<R>;
+
+    #[inline(always)]
+    fn compute(self) -> Period<R> {
+        self.loop_.move_plant(self.state, self.command, self.factors)
+    }
+}
+
+#[inline(always)]
+fn apart<R: Real, B: Block, const APART: bool>(block: B) -> B::Output {
+    if APART { R::apart(block) } else { block.compute() }
 }

@@ -17,7 +17,7 @@
 //! let joint = Joint::Lugre(Lugre {
 //!     stiction_n: 450.0, coulomb_n: 360.0, stiffness_n_per_m: 3.6e7, damping_n_s_per_m: 9000.0,
 //!     viscous_n_s_per_m: None, stribeck_velocity_m_per_s: 0.09, engagement_length_m: 0.1,
-//!     residual_n: 9.81,
+//!     residual_n: 9.81, damping_velocity_m_per_s: None, backward_ratio: None,
 //! });
 //! // Halfway out, half of the contact area is left: equation (5).
 //! assert!((joint.breakaway_force(0.05) - (450.0 + 9.81) / 2.0_f64).abs() < 1e-12);
@@ -43,6 +43,7 @@ pub mod plant;
 pub mod real;
 pub mod reference;
 pub mod rig;
+pub mod sensor;
 pub mod test_models;
 
 pub use disturbance::Draws;

@@ -1,5 +1,6 @@
 //! What a run reports, reduced sample by sample.
 
+use crate::actuator::Effort;
 use crate::extraction::Sample;
 use crate::parameters::parameters;
 use crate::real::Real;
@@ -14,6 +15,8 @@ parameters! {
         /// x in m at which the part counts as free: l_f less a tolerance, since a reference that
         /// ends at l_f is approached from below.
         pub release_position_m,
+        /// The run ends this long after the release, s; infinite where it goes on.
+        pub after_release_s,
         /// Travel in m at which the joint counts as loose: twice the presliding travel F_s0 / k_e.
         pub breakaway_travel_m,
         /// Largest |F| in N that is allowed.
@@ -58,6 +61,8 @@ pub struct Groups {
     pub jump: bool,
     /// `breakaway_s`, `release_s`, `release_velocity_m_per_s`.
     pub events: bool,
+    /// `supplied_j`, `actuator_loss_j`, `charge_c`, `current_square_a2_s`, `stack_tension_n`.
+    pub effort: bool,
     /// `end_position_m`, `end_bristle_m`.
     pub end: bool,
 }
@@ -73,6 +78,7 @@ impl Groups {
         impacts: false,
         jump: false,
         events: false,
+        effort: false,
         end: false,
     };
     /// Everything.
@@ -85,6 +91,7 @@ impl Groups {
         impacts: true,
         jump: true,
         events: true,
+        effort: true,
         end: true,
     };
 
@@ -100,6 +107,7 @@ impl Groups {
             impacts: self.impacts | other.impacts,
             jump: self.jump | other.jump,
             events: self.events | other.events,
+            effort: self.effort | other.effort,
             end: self.end | other.end,
         }
     }
@@ -113,6 +121,10 @@ parameters! {
     pub struct Metrics {
         /// 1 while |e| and |F| are within bounds; once 0, nothing is counted any more.
         pub bounded,
+        /// 1 once the run has ended with its release; nothing is counted any more.
+        pub over,
+        /// Why the watch stopped the controller; 0 if it did not.
+        pub stop_reason,
         /// ∫ dt over counted samples, s.
         pub time_s,
         /// IAE = ∫ |e| dt, m s.
@@ -159,6 +171,16 @@ parameters! {
         pub release_s,
         /// v when the part came free, m/s.
         pub release_velocity_m_per_s,
+        /// Work that the actuator's drives supplied, J.
+        pub supplied_j,
+        /// Energy lost in the actuator and its contact, J.
+        pub actuator_loss_j,
+        /// ∫ |I| dt of the amplifier, C.
+        pub charge_c,
+        /// ∫ I² dt of the amplifier, A² s.
+        pub current_square_a2_s,
+        /// Largest tension of the stack beyond its preload, N; below 0 if it was always pressed.
+        pub stack_tension_n,
         /// x at the end, or when the run left its bounds, m.
         pub end_position_m,
         /// z then, m.
@@ -173,6 +195,8 @@ impl<R: Real> Metrics<R> {
         let not_yet = R::constant(f64::INFINITY);
         Self {
             bounded: R::one(),
+            over: zero,
+            stop_reason: zero,
             time_s: zero,
             iae_m_s: zero,
             ise_m2_s: zero,
@@ -196,6 +220,11 @@ impl<R: Real> Metrics<R> {
             breakaway_s: not_yet,
             release_s: not_yet,
             release_velocity_m_per_s: zero,
+            supplied_j: zero,
+            actuator_loss_j: zero,
+            charge_c: zero,
+            current_square_a2_s: zero,
+            stack_tension_n: R::constant(f64::NEG_INFINITY),
             end_position_m: zero,
             end_bristle_m: zero,
         }
@@ -209,13 +238,21 @@ impl<R: Real> Metrics<R> {
     /// what one counts has the same bits whether others are wanted or not.
     #[inline(always)]
     pub fn update(&mut self, wanted: Groups, limits: &Limits<R>, sample: &Sample<R>) {
-        let was_bounded = self.bounded.is_set();
+        let going = !self.over.is_set();
+        let was_bounded = self.bounded.is_set() & going;
         let error = (sample.reference_m - sample.position_m).abs();
-        let force = sample.applied_force_n.abs();
+        let force = sample.largest_force_n;
         let within = error.le(limits.diverged_error_m) & force.le(limits.diverged_force_n);
         let bounded = was_bounded & within;
-        self.bounded = R::flag(bounded);
+        self.bounded = R::flag(bounded | !going);
         self.count(wanted, limits, sample, was_bounded, bounded);
+        let since_s = sample.time_s + sample.period_s - self.release_s;
+        self.over = R::flag(limits.after_release_s.le(since_s));
+    }
+
+    /// Whether the run goes on: within its bounds, and not over.
+    pub fn goes_on(&self) -> R::Mask {
+        self.bounded.is_set() & !self.over.is_set()
     }
 
     /// Counts a sample as [`Metrics::update`] does for one that is within its bounds, without looking.
@@ -259,7 +296,7 @@ impl<R: Real> Metrics<R> {
         if wanted.extremes {
             let error = sample.reference_m - sample.position_m;
             self.largest_error_m = larger_where(was_bounded, error, self.largest_error_m);
-            let force = sample.applied_force_n;
+            let force = sample.largest_force_n;
             self.peak_force_n = larger_where(was_bounded, force, self.peak_force_n);
         }
         if wanted.force | wanted.impacts | wanted.jump {
@@ -268,7 +305,11 @@ impl<R: Real> Metrics<R> {
         if wanted.events {
             self.note_times(limits, sample, bounded);
         }
+        if wanted.effort {
+            self.count_effort(&sample.effort, bounded);
+        }
         if wanted.end {
+            self.stop_reason = R::select(bounded, sample.stop_reason, self.stop_reason);
             self.end_position_m = R::select(bounded, sample.next_position_m, self.end_position_m);
             self.end_bristle_m = R::select(bounded, sample.next_bristle_m, self.end_bristle_m);
         }
@@ -287,11 +328,13 @@ impl<R: Real> Metrics<R> {
         let travel = where_it_holds(moved, sample.next_position_m - sample.position_m);
         let force = where_it_holds(bounded, sample.applied_force_n);
         if wanted.force {
-            let joint_force = where_it_holds(bounded, sample.joint_force_n);
-            self.count_force(period_s, force, travel, joint_force);
-            let (asked, given) = (sample.command_n, sample.applied_force_n);
-            let missed = asked.lt(given) | given.lt(asked);
-            self.saturated_s = self.saturated_s + where_it_holds(missed, period_s);
+            let impulse = force * period_s;
+            self.impulse_n_s = self.impulse_n_s + impulse;
+            self.force_square_n2_s = force.mul_add(impulse, self.force_square_n2_s);
+            self.work_j = self.work_j + where_it_holds(moved, sample.work_j);
+            self.joint_work_j = self.joint_work_j + where_it_holds(moved, sample.joint_work_j);
+            let saturated_s = where_it_holds(bounded, sample.effort.saturated_s);
+            self.saturated_s = self.saturated_s + saturated_s;
         }
         if wanted.impacts {
             self.count_impacts(period_s, force, travel);
@@ -299,7 +342,7 @@ impl<R: Real> Metrics<R> {
         if wanted.jump {
             let in_guide = sample.position_m.lt(limits.release_position_m);
             let slipped = where_it_holds(in_guide, travel);
-            self.count_jump(period_s, slipped, sample.reference_rate_m_per_s);
+            self.count_jump(period_s, slipped, sample.commanded_m_per_s);
         }
     }
 
@@ -311,12 +354,14 @@ impl<R: Real> Metrics<R> {
     }
 
     #[inline(always)]
-    fn count_force(&mut self, period_s: R, force: R, travel: R, joint_force: R) {
-        let impulse = force * period_s;
-        self.impulse_n_s = self.impulse_n_s + impulse;
-        self.force_square_n2_s = force.mul_add(impulse, self.force_square_n2_s);
-        self.work_j = force.mul_add(travel, self.work_j);
-        self.joint_work_j = joint_force.mul_add(travel, self.joint_work_j);
+    fn count_effort(&mut self, effort: &Effort<R>, bounded: R::Mask) {
+        self.supplied_j = self.supplied_j + where_it_holds(bounded, effort.supplied_j);
+        self.actuator_loss_j = self.actuator_loss_j + where_it_holds(bounded, effort.lost_j);
+        self.charge_c = self.charge_c + where_it_holds(bounded, effort.charge_c);
+        let square = where_it_holds(bounded, effort.current_square_a2_s);
+        self.current_square_a2_s = self.current_square_a2_s + square;
+        let tension = self.stack_tension_n.max(effort.stack_tension_n);
+        self.stack_tension_n = R::select(bounded, tension, self.stack_tension_n);
     }
 
     #[inline(always)]
@@ -336,8 +381,8 @@ impl<R: Real> Metrics<R> {
     /// A jump is travel faster than the reference while still in the guide, which is what harms a
     /// part: it ends when the part is no faster than the reference, or free.
     #[inline(always)]
-    fn count_jump(&mut self, period_s: R, travel: R, reference_rate: R) {
-        let commanded = reference_rate.max(R::zero());
+    fn count_jump(&mut self, period_s: R, travel: R, commanded: R) {
+        let commanded = commanded.max(R::zero());
         let excess = (-commanded).mul_add(period_s, travel);
         self.jump_m = R::select(R::zero().lt(excess), self.jump_m + excess, R::zero());
         self.largest_jump_m = self.largest_jump_m.max(self.jump_m);

@@ -1,28 +1,44 @@
 //! Newton's law for the part, and the two ways to integrate it with its joint.
 
 use crate::disturbance::Factors;
-use crate::joint::{Bristle, JointState, Law};
+use crate::joint::{At, Bristle, ElementState, Elements, Frozen, JointState, Law, Rigid};
 use crate::parameters::parameters;
 use crate::real::Real;
 
-parameters! {
-    /// What moves: the part on its seat.
-    pub struct PlantState {
-        /// x in m: 0 at the seat, l_f when free.
-        pub position_m,
-        /// v in m/s.
-        pub velocity_m_per_s,
-        /// z in m, deflection of the bristles.
-        pub bristle_m,
-        /// 1 while a law with a slip event slides, else 0.
-        pub sliding,
-        /// R in N before its disturbance, at the middle of the last step. Start it at zero.
-        pub joint_force_n,
+/// What moves: the part on its seat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantState<R> {
+    /// x in m: 0 at the seat, l_f when free.
+    pub position_m: R,
+    /// v in m/s.
+    pub velocity_m_per_s: R,
+    /// z in m, deflection of the bristles; the mean Σ k_i z_i / k_e of several elements.
+    pub bristle_m: R,
+    /// 1 while a law with a slip event slides, else 0.
+    pub sliding: R,
+    /// R in N before its disturbance, at the middle of the last step. Start it at zero.
+    pub joint_force_n: R,
+    /// What a law with several elements remembers of each; other laws leave it alone.
+    pub elements: ElementState<R>,
+}
+
+impl<R: Copy> PlantState<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> PlantState<S> {
+        PlantState {
+            position_m: f("position_m", self.position_m),
+            velocity_m_per_s: f("velocity_m_per_s", self.velocity_m_per_s),
+            bristle_m: f("bristle_m", self.bristle_m),
+            sliding: f("sliding", self.sliding),
+            joint_force_n: f("joint_force_n", self.joint_force_n),
+            elements: self.elements.map(f),
+        }
     }
 }
 
 impl<R: Real> PlantState<R> {
     /// At rest on the seat, bristles relaxed.
+    #[inline(always)]
     pub fn at_rest() -> Self {
         let zero = R::zero();
         Self {
@@ -31,6 +47,7 @@ impl<R: Real> PlantState<R> {
             bristle_m: zero,
             sliding: zero,
             joint_force_n: zero,
+            elements: ElementState::at_rest(),
         }
     }
 
@@ -50,6 +67,62 @@ pub enum Integrator {
     Rk4,
 }
 
+/// What pushes the part during a step.
+///
+/// ```text
+/// F = F_0                          rigid: whatever the part does
+/// F = max(0, F_0 − S v_m)          through something compliant in a contact that can not pull
+/// ```
+///
+/// v_m is the part's velocity at the middle of the step, F_0 the force there if the part stood
+/// still, and S ≥ 0 how much of it each m/s takes away. A spring of k N/m between part and pusher
+/// has S = k h / 2, a damper its own constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push<R> {
+    /// F_0 in N.
+    pub force_n: R,
+    /// S in N s/m; none for a rigid push.
+    pub yielding_n_s_per_m: Option<R>,
+}
+
+impl<R: Real> Push<R> {
+    /// The same force whatever the part does.
+    #[inline(always)]
+    pub fn rigid(force_n: R) -> Self {
+        Self { force_n, yielding_n_s_per_m: None }
+    }
+
+    /// F in N on a part whose middle velocity is v_free + Y F:
+    ///
+    /// ```text
+    /// F = max(0, (F_0 − S v_free) / (1 + S Y))
+    /// ```
+    ///
+    /// This is the one F that agrees with both, since F_0 − S v_m falls with F.
+    #[inline(always)]
+    fn meets(&self, free_m_per_s: R, mobility_m_per_n_s: R) -> R {
+        match self.yielding_n_s_per_m {
+            Some(s) => {
+                let stopped = s.mul_add(mobility_m_per_n_s, R::one());
+                R::zero().max((-s).mul_add(free_m_per_s, self.force_n) / stopped)
+            }
+            None => self.force_n,
+        }
+    }
+}
+
+parameters! {
+    /// What happened during a step.
+    pub struct Moved {
+        /// R in N: the mean, disturbance included.
+        pub joint_force_n,
+        /// F in N.
+        pub push_force_n,
+        /// Travel over time, m/s.
+        pub mean_velocity_m_per_s,
+    }
+}
+
 /// m dv/dt = F − R,  dx/dt = v,  with R = 0 beyond the end of the guide.
 #[derive(Clone, Copy, Debug)]
 pub struct Plant<'a, R, L> {
@@ -57,16 +130,32 @@ pub struct Plant<'a, R, L> {
     pub joint: &'a L,
     /// m in kg.
     pub mass_kg: R,
-    /// F in N, constant over a step.
-    pub force_n: R,
+    /// F, its numbers constant over a step.
+    pub push: Push<R>,
     /// The disturbance, constant over a step.
     pub factors: Factors<R>,
 }
 
+/// What a step of the midpoint rule starts from.
+#[derive(Clone, Copy)]
+struct Midpoint<R: Real> {
+    /// k = h/2 in s.
+    k: R,
+    /// k/m in s/kg.
+    k_over_m: R,
+    /// q = k n/m in s/kg, n the factor on the joint force.
+    q: R,
+    /// Whether the joint still holds at the middle of the step.
+    engaged: R::Mask,
+}
+
 impl<R: Real, L: Law<R>> Plant<'_, R, L> {
-    /// Steps by `h` seconds; gives the mean joint force in N over the step, disturbance included.
+    /// Steps by `h` seconds.
+    ///
+    /// Runge-Kutta steps a rigid push on a law of one bristle; callers see to that. With anything
+    /// else it gives numbers that are none.
     #[inline(always)]
-    pub fn step(&self, integrator: Integrator, state: &mut PlantState<R>, h: R) -> R {
+    pub fn step(&self, integrator: Integrator, state: &mut PlantState<R>, h: R) -> Moved<R> {
         let settled = self.joint.settle(
             state.joint(),
             state.position_m,
@@ -85,14 +174,44 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         x.lt(self.joint.engagement_length_m())
     }
 
-    /// The bristle equation is linear in (v, z) once its coefficients are frozen at a predicted
-    /// midpoint velocity; the midpoint rule then has the closed form below. With k = h/2,
-    /// w = v + k F/m and q = k n/m (n the factor on the joint force):
+    /// The law, frozen at a predicted midpoint velocity, gives R_m = R_0 + D v_m; the midpoint rule
+    /// m (v_m − v) / k = F − n R_m is then solved in closed form, stuck or sliding. The prediction
+    /// takes the joint force of the step before, and the push that goes with it.
+    #[inline(always)]
+    fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, h: R) -> Moved<R> {
+        let v = state.velocity_m_per_s;
+        let k = R::constant(0.5) * h;
+        let k_over_m = k / self.mass_kg;
+        let x_mid = k.mul_add(v, state.position_m);
+        let q = k_over_m * self.factors.joint_force;
+        let v_predicted = match self.push.yielding_n_s_per_m {
+            Some(_) => {
+                let unpushed = (-q).mul_add(state.joint_force_n, v);
+                k_over_m.mul_add(self.push.meets(unpushed, k_over_m), unpushed)
+            }
+            None => {
+                let w = k_over_m.mul_add(self.push.force_n, v);
+                (-q).mul_add(state.joint_force_n, w)
+            }
+        };
+        let at = At {
+            position_m: x_mid,
+            velocity_m_per_s: v_predicted,
+            level_factor: self.factors.friction_level,
+            ahead_s: k,
+        };
+        let joint = state.joint();
+        let middle = Midpoint { k, k_over_m, q, engaged: self.engaged(x_mid) };
+        self.joint.frozen(&joint, &at, Step { plant: self, state, middle })
+    }
+
+    /// One bristle. With w = v + k F/m:
     ///
     /// ```text
     /// v_m = w − q R_m,   R_m = k_e z_m + c ż_m + σ v_m,   z_m = z + k ż_m,   ż_m = α v_m − (A/g) z_m
     /// den = g [1 + q σ + q k α (k_e + c/k)] + k A (1 + q σ)
     /// v_m = [g (w − q k_e z) + k A (w + q c/k z)] / den
+    /// Y   = ∂v_m/∂F = (k/m) (g + k A) / den
     /// R_m = (w − v_m) / q
     /// z_m = (R_m + c/k z − σ v_m) / (k_e + c/k)
     /// ```
@@ -103,18 +222,15 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     /// part whose middle is beyond the guide moves by w alone; its R_m is zero, and its bristle relaxes.
     /// Derivation and error constants: `docs/derivations/linearly_implicit_midpoint.md`.
     #[inline(always)]
-    fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, h: R) -> R {
+    fn step_bristle(
+        &self,
+        state: &mut PlantState<R>,
+        at: &Midpoint<R>,
+        b: &Bristle<R>,
+    ) -> Moved<R> {
         let (v, z) = (state.velocity_m_per_s, state.bristle_m);
-        let k = R::constant(0.5) * h;
-        let k_over_m = k / self.mass_kg;
-        let x_mid = k.mul_add(v, state.position_m);
+        let &Midpoint { k, k_over_m, q, engaged } = at;
         let n = self.factors.joint_force;
-        let q = k_over_m * n;
-        let w = k_over_m.mul_add(self.force_n, v);
-        let v_predicted = (-q).mul_add(state.joint_force_n, w);
-        let level = self.factors.friction_level;
-        let b = self.joint.freeze(&state.joint(), x_mid, v_predicted, level);
-
         let g = b.friction_level_n;
         let (k_e, c_over_k) = (b.stiffness_n_per_m, b.damping_n_s_per_m / k);
         let viscous = match b.viscous_n_s_per_m {
@@ -124,10 +240,20 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let per_level = (q * k * b.stretch).mul_add(k_e + c_over_k, viscous) / viscous;
         let slip = k * b.relaxation_n_per_m * b.speed_m_per_s; // k A
         let two_over_den = R::constant(2.0) / viscous / g.mul_add(per_level, slip);
+        let force_n = match self.push.yielding_n_s_per_m {
+            Some(_) => {
+                let half = R::constant(0.5) * two_over_den;
+                let free = g.mul_add((q * k_e).mul_add(-z, v), slip * (q * c_over_k).mul_add(z, v));
+                let held = self.push.meets(free * half, k_over_m * ((g + slip) * half));
+                R::select(engaged, held, self.push.meets(v, k_over_m))
+            }
+            None => self.push.force_n,
+        };
+        let w = k_over_m.mul_add(force_n, v);
         let driven = g.mul_add((q * k_e).mul_add(-z, w), slip * (q * c_over_k).mul_add(z, w));
 
         let two_w = w + w;
-        let two_v = R::select(self.engaged(x_mid), driven * two_over_den, two_w);
+        let two_v = R::select(engaged, driven * two_over_den, two_w);
         let lost = two_w - two_v; // 2 q R_m
         let per_lost = R::constant(0.5) / k_over_m * (R::one() / n); // 1 / (2 q)
         let per_force = R::one() / (k_e + c_over_k);
@@ -136,27 +262,117 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
             Some(sigma) => (-(per_force * sigma)).mul_add(two_v, kept),
             None => kept,
         };
-        state.joint_force_n = lost * per_lost;
-        state.position_m = k.mul_add(two_v, state.position_m);
-        state.velocity_m_per_s = two_v - v;
         state.bristle_m = (per_force * R::constant(2.0) * per_lost).mul_add(lost, kept);
-        n * state.joint_force_n
+        self.carry(state, k, two_v, lost * per_lost, force_n)
+    }
+
+    /// Several elements:
+    ///
+    /// ```text
+    /// R_m = R_0 + D v_m,   v_m = (v + k F/m − q R_0) / (1 + q D),   Y = (k/m) / (1 + q D)
+    /// ```
+    #[inline(always)]
+    fn step_elements(
+        &self,
+        state: &mut PlantState<R>,
+        at: &Midpoint<R>,
+        elements: &Elements<'_, R>,
+    ) -> Moved<R> {
+        let v = state.velocity_m_per_s;
+        let &Midpoint { k, k_over_m, q, engaged } = at;
+        let mut moving = state.elements;
+        let ahead = elements.ahead(&mut moving, k);
+        let per_resisted = R::one() / q.mul_add(ahead.resistance_n_s_per_m, R::one());
+        let free = (-q).mul_add(ahead.force_at_rest_n, v) * per_resisted;
+        let mobility = k_over_m * per_resisted;
+        let force_n =
+            R::select(engaged, self.push.meets(free, mobility), self.push.meets(v, k_over_m));
+        let held = mobility.mul_add(force_n, free);
+        let v_mid = R::select(engaged, held, k_over_m.mul_add(force_n, v));
+        let joint_force = ahead.resistance_n_s_per_m.mul_add(v_mid, ahead.force_at_rest_n);
+        state.bristle_m = elements.finish(&ahead, &mut moving, v_mid, engaged);
+        state.elements = moving;
+        let joint_force = R::select(engaged, joint_force, R::zero());
+        self.carry(state, k, v_mid + v_mid, joint_force, force_n)
+    }
+
+    /// No bristle: the force that stops the part within the step, limited to the level.
+    ///
+    /// ```text
+    /// holds:  v_m = v/2,    R = [v + k F/m − (1 + q σ) v/2] / q     if −L_b ≤ R ≤ L
+    /// slips:  v_m = (v + k F/m − q R) / (1 + q σ)                   with R = L or −L_b, the nearer
+    /// ```
+    #[inline(always)]
+    fn step_rigid(
+        &self,
+        state: &mut PlantState<R>,
+        at: &Midpoint<R>,
+        rigid: &Rigid<R>,
+    ) -> Moved<R> {
+        let v = state.velocity_m_per_s;
+        let &Midpoint { k, k_over_m, q, engaged } = at;
+        let (zero, half) = (R::zero(), R::constant(0.5));
+        let sigma = R::select(engaged, rigid.viscous_n_s_per_m.unwrap_or(zero), zero);
+        let viscous = q.mul_add(sigma, R::one());
+        let level = R::select(engaged, rigid.level_n, zero);
+        let backward_level = R::select(engaged, rigid.backward_level_n, zero);
+
+        let stopping = self.push.meets(half * v, zero);
+        let wanted = ((-half * viscous).mul_add(v, k_over_m.mul_add(stopping, v))) / q;
+        let friction = wanted.min(level).max(-backward_level);
+        let slips = level.lt(wanted) | wanted.lt(-backward_level);
+        let per_viscous = R::one() / viscous;
+        let free = (-q).mul_add(friction, v) * per_viscous;
+        let force_n = R::select(slips, self.push.meets(free, k_over_m * per_viscous), stopping);
+        let sliding = (k_over_m * per_viscous).mul_add(force_n, free);
+        let two_v = R::select(slips, sliding + sliding, v);
+        state.sliding = R::flag(slips);
+        let joint_force = (half * sigma).mul_add(two_v, friction);
+        self.carry(state, k, two_v, joint_force, force_n)
+    }
+
+    /// Ends a step whose middle velocity was `two_v` / 2.
+    #[inline(always)]
+    fn carry(
+        &self,
+        state: &mut PlantState<R>,
+        k: R,
+        two_v: R,
+        joint_force_n: R,
+        push_force_n: R,
+    ) -> Moved<R> {
+        state.joint_force_n = joint_force_n;
+        state.position_m = k.mul_add(two_v, state.position_m);
+        state.velocity_m_per_s = two_v - state.velocity_m_per_s;
+        Moved {
+            joint_force_n: self.factors.joint_force * joint_force_n,
+            push_force_n,
+            mean_velocity_m_per_s: R::constant(0.5) * two_v,
+        }
     }
 
     /// (dx/dt, dv/dt, dz/dt) and the joint force in N, disturbance included.
     #[inline(always)]
     fn rates(&self, state: &JointState<R>, x: R, v: R, z: R) -> ([R; 3], R) {
-        let b: Bristle<R> = self.joint.freeze(state, x, v, self.factors.friction_level);
+        let state = JointState { bristle_m: z, ..*state };
+        let level = self.factors.friction_level;
+        let Some(b) = self.joint.freeze(&state, x, v, level) else {
+            return ([R::constant(f64::NAN); 3], R::constant(f64::NAN));
+        };
         let z_rate = b.rate(v, z);
         let force = self.factors.joint_force * b.force(v, z, z_rate);
         let engaged = self.engaged(x);
         let joint_force = R::select(engaged, force, R::zero());
         let z_rate = R::select(engaged, z_rate, R::zero());
-        ([v, (self.force_n - joint_force) / self.mass_kg, z_rate], joint_force)
+        let push = match self.push.yielding_n_s_per_m {
+            Some(_) => R::constant(f64::NAN),
+            None => self.push.force_n,
+        };
+        ([v, (push - joint_force) / self.mass_kg, z_rate], joint_force)
     }
 
     #[inline(always)]
-    fn rk4(&self, state: &mut PlantState<R>, h: R) -> R {
+    fn rk4(&self, state: &mut PlantState<R>, h: R) -> Moved<R> {
         let joint = state.joint();
         let start = [state.position_m, state.velocity_m_per_s, state.bristle_m];
         let at = |slope: &[R; 3], step: R| {
@@ -176,7 +392,34 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         (state.position_m, state.velocity_m_per_s, state.bristle_m) = (x, v, z);
         let joint_force = mean(r1, r2, r3, r4);
         state.joint_force_n = joint_force / self.factors.joint_force;
-        joint_force
+        Moved {
+            joint_force_n: joint_force,
+            push_force_n: self.push.force_n,
+            mean_velocity_m_per_s: (x - start[0]) / h,
+        }
+    }
+}
+
+/// A step of the midpoint rule, for whatever the law is.
+struct Step<'a, 'b, R: Real, L> {
+    plant: &'a Plant<'b, R, L>,
+    state: &'a mut PlantState<R>,
+    middle: Midpoint<R>,
+}
+
+impl<R: Real, L: Law<R>> Frozen<R> for Step<'_, '_, R, L> {
+    type Output = Moved<R>;
+    #[inline(always)]
+    fn bristle(self, bristle: &Bristle<R>) -> Moved<R> {
+        self.plant.step_bristle(self.state, &self.middle, bristle)
+    }
+    #[inline(always)]
+    fn elements(self, elements: &Elements<'_, R>) -> Moved<R> {
+        self.plant.step_elements(self.state, &self.middle, elements)
+    }
+    #[inline(always)]
+    fn rigid(self, rigid: &Rigid<R>) -> Moved<R> {
+        self.plant.step_rigid(self.state, &self.middle, rigid)
     }
 }
 
@@ -188,7 +431,8 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
 /// ```
 ///
 /// The midpoint rule again, second order and stable for any step. The velocity of `state` is set
-/// to `v`. Beyond the end of the guide the force is zero.
+/// to `v`. Beyond the end of the guide the force is zero. A rigid joint that does not move holds
+/// what it held, at most its level.
 #[inline(always)]
 pub fn impose_motion<R: Real>(joint: &impl Law<R>, state: &mut PlantState<R>, v: R, h: R) -> R {
     let (zero, one) = (R::zero(), R::one());
@@ -196,14 +440,58 @@ pub fn impose_motion<R: Real>(joint: &impl Law<R>, state: &mut PlantState<R>, v:
     (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
     let k = R::constant(0.5) * h;
     let x_mid = k.mul_add(v, state.position_m);
-    let b = joint.freeze(&settled, x_mid, v, one);
-    let relaxed = one + k * b.relaxation() / b.friction_level_n;
-    let z_mid = (k * b.stretch).mul_add(v, state.bristle_m) / relaxed;
     let engaged = x_mid.lt(joint.engagement_length_m());
-    let force = R::select(engaged, b.force(v, z_mid, b.rate(v, z_mid)), zero);
-    state.bristle_m = R::select(engaged, R::constant(2.0) * z_mid - state.bristle_m, zero);
+    let at = At { position_m: x_mid, velocity_m_per_s: v, level_factor: one, ahead_s: k };
+    let force = joint.frozen(&settled, &at, Imposed { state, v, k, engaged });
+    let force = R::select(engaged, force, zero);
+    state.bristle_m = R::select(engaged, state.bristle_m, zero);
     state.position_m = h.mul_add(v, state.position_m);
     state.velocity_m_per_s = v;
     state.joint_force_n = force;
     force
+}
+
+/// Half a step of k seconds at an imposed velocity v; gives the joint force in N.
+struct Imposed<'a, R: Real> {
+    state: &'a mut PlantState<R>,
+    v: R,
+    k: R,
+    engaged: R::Mask,
+}
+
+impl<R: Real> Frozen<R> for Imposed<'_, R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn bristle(self, b: &Bristle<R>) -> R {
+        let Self { state, v, k, .. } = self;
+        let relaxed = R::one() + k * b.relaxation() / b.friction_level_n;
+        let z_mid = (k * b.stretch).mul_add(v, state.bristle_m) / relaxed;
+        state.bristle_m = R::constant(2.0) * z_mid - state.bristle_m;
+        b.force(v, z_mid, b.rate(v, z_mid))
+    }
+
+    #[inline(always)]
+    fn elements(self, elements: &Elements<'_, R>) -> R {
+        let Self { state, v, k, engaged } = self;
+        let mut moving = state.elements;
+        let ahead = elements.ahead(&mut moving, k);
+        state.bristle_m = elements.finish(&ahead, &mut moving, v, engaged);
+        state.elements = moving;
+        ahead.resistance_n_s_per_m.mul_add(v, ahead.force_at_rest_n)
+    }
+
+    #[inline(always)]
+    fn rigid(self, rigid: &Rigid<R>) -> R {
+        let Self { state, v, .. } = self;
+        let zero = R::zero();
+        let held = state.joint_force_n.min(rigid.level_n).max(-rigid.backward_level_n);
+        let backward = R::select(v.lt(zero), -rigid.backward_level_n, held);
+        let friction = R::select(zero.lt(v), rigid.level_n, backward);
+        state.sliding = R::flag(v.lt(zero) | zero.lt(v));
+        match rigid.viscous_n_s_per_m {
+            Some(sigma) => sigma.mul_add(v, friction),
+            None => friction,
+        }
+    }
 }

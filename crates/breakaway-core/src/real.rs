@@ -5,6 +5,17 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use crate::{exp2, fused};
 
+/// A computation that may be compiled on its own: a part of a step that would make it too large.
+///
+/// A type and not a closure, because closures are not inlined into the caller's instruction set.
+pub trait Block {
+    /// What it gives.
+    type Output;
+
+    /// Computes it. Has to be inlined.
+    fn compute(self) -> Self::Output;
+}
+
 /// A number that the equations can be computed with.
 ///
 /// The operations are the ones that an export to C reproduces bit for bit: plus, minus, times,
@@ -38,6 +49,9 @@ pub trait Real:
         + BitOr<Output = Self::Mask>
         + Not<Output = Self::Mask>;
 
+    /// 1.5·2⁵² (`f64`) or 1.5·2²³ (`f32`): added and taken away again, it rounds to a whole number.
+    const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²
+
     /// The number nearest to `value`.
     fn constant(value: f64) -> Self;
 
@@ -54,6 +68,13 @@ pub trait Real:
     #[inline(always)]
     fn known(holds: bool) -> Self::Mask {
         Self::zero().lt(Self::constant(f64::from(u8::from(holds))))
+    }
+
+    /// Computes a block as a function of its own, where these numbers know how to call one; else in
+    /// place. The same bits either way: it is for compilers, whose effort grows faster than a function.
+    #[inline(always)]
+    fn apart<B: Block>(block: B) -> B::Output {
+        block.compute()
     }
 
     /// Absolute value.
@@ -120,6 +141,13 @@ pub trait Real:
         self.max(low).min(high)
     }
 
+    /// The nearest whole number, the even one of two; valid for |self| below 2⁵¹ (`f64`) or 2²² (`f32`).
+    #[inline(always)]
+    fn round(self) -> Self {
+        let magic = Self::constant(Self::ROUND);
+        (self + magic) - magic
+    }
+
     /// -1, 0 or 1 with the sign of the number; 0 for both zeros.
     #[inline(always)]
     fn sign(self) -> Self {
@@ -141,9 +169,10 @@ pub trait Real:
 }
 
 macro_rules! impl_real {
-    ($float:ty, $exp2:expr, $fma:path) => {
+    ($float:ty, $round:expr, $exp2:expr, $fma:path) => {
         impl Real for $float {
             type Mask = bool;
+            const ROUND: f64 = $round;
 
             #[inline(always)]
             fn constant(value: f64) -> Self {
@@ -183,10 +212,11 @@ macro_rules! impl_real {
 
 impl_real!(
     f64,
+    6_755_399_441_055_744.0,
     |y| exp2::exp2_parts_in_double(y, |n: f64| f64::from_bits(n.to_bits() << 52)),
     fused::fma_f64
 );
-impl_real!(f32, exp2::exp2_f32, fused::fma_f32);
+impl_real!(f32, 12_582_912.0, exp2::exp2_f32, fused::fma_f32);
 
 #[cfg(test)]
 mod tests {
@@ -197,6 +227,14 @@ mod tests {
         assert_eq!(Real::sign(-0.0_f64), 0.0);
         assert_eq!(Real::sign(-2.0_f64), -1.0);
         assert_eq!(Real::sign(1e-300_f64), 1.0);
+    }
+
+    #[test]
+    fn rounding_goes_to_the_nearest() {
+        for (value, whole) in [(0.49, 0.0), (-2.6, -3.0), (7.5, 8.0), (8.5, 8.0), (1e6, 1e6)] {
+            assert_eq!(Real::round(value), whole);
+            assert_eq!(Real::round(value as f32), whole as f32);
+        }
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! A rig with a moving part whose friction is to be identified: what a log of it should show.
 
 use crate::actuator::ForceRange;
-use crate::control::{Cascade, CascadeState, ControllerState, DerivativeOf, Measurement, Pid};
+use crate::control::{Cascade, CascadeState, DerivativeOf, Measurement, Pid, PidState};
 use crate::disturbance::Factors;
-use crate::joint::{DirectionalLugre, JointState, Law};
-use crate::plant::{Integrator, Plant, PlantState};
+use crate::joint::{DirectionalLugre, JointState};
+use crate::plant::{Integrator, Plant, PlantState, Push};
 use crate::real::Real;
 
 /// A part on a rig.
@@ -140,7 +140,7 @@ pub struct Predicted<R> {
 pub struct RigState<R> {
     plant: PlantState<R>,
     cascade: CascadeState<R>,
-    pid: ControllerState<R>,
+    pid: PidState<R>,
 }
 
 impl<R: Real> Rig<R> {
@@ -181,7 +181,7 @@ impl<R: Real> Rig<R> {
             joint_force_n: friction_n,
             ..PlantState::at_rest()
         };
-        let pid = ControllerState::at_rest(x - v * row.period_s);
+        let pid = PidState::at_rest(x - v * row.period_s);
         let mut state = RigState { plant, cascade: CascadeState::moving(x, v, row.period_s), pid };
         if let Drive::Pid(limited) = drive {
             self.start_pid(limited, &mut state, row);
@@ -231,8 +231,8 @@ impl<R: Real> Rig<R> {
         for _ in 0..steps {
             let half = R::constant(0.5) * h;
             let x_mid = half.mul_add(state.plant.velocity_m_per_s, state.plant.position_m);
-            let force_n = force_n - self.rig_force(x_mid);
-            let plant = Plant { joint: &self.friction, mass_kg: self.mass_kg, force_n, factors };
+            let push = Push::rigid(force_n - self.rig_force(x_mid));
+            let plant = Plant { joint: &self.friction, mass_kg: self.mass_kg, push, factors };
             plant.step(Integrator::LinearlyImplicitMidpoint, &mut state.plant, h);
         }
         predicted
@@ -246,13 +246,11 @@ impl<R: Real> Rig<R> {
             reference_rate_m_per_s: row.reference_rate_m_per_s,
             position_m: state.plant.position_m,
             velocity_m_per_s: state.plant.velocity_m_per_s,
+            force_n: row.force_n,
             period_s: row.period_s,
             range,
         };
-        let mut moving = state.pid.pid();
-        let force = limited.pid.step(&mut moving, &measured);
-        state.pid.set_pid(moving);
-        range.limit(force)
+        range.limit(limited.pid.step(&mut state.pid, &measured))
     }
 
     /// The force at a row whose motion is measured; the bristle follows to the next row.

@@ -22,6 +22,8 @@ pub fn paper_joint() -> Lugre<f64> {
         stribeck_velocity_m_per_s: 0.09,
         engagement_length_m: 0.1,
         residual_n: 9.81,
+        damping_velocity_m_per_s: None,
+        backward_ratio: None,
     }
 }
 
@@ -49,6 +51,8 @@ pub fn paper_as_computed() -> Extraction<f64> {
             acts_on: DisturbedQuantity::JointForce,
         },
         actuator: Actuator::Ideal,
+        sensors: None,
+        watch: None,
         controller: Controller::Pid(Pid {
             gains: Gains {
                 kp_n_per_m: total(kp - 3.6e7, kp / second_mass - 1.0),
@@ -77,6 +81,7 @@ pub fn paper_limits() -> Limits<f64> {
         diverged_error_m: 0.05,
         diverged_force_n: 9000.0,
         release_position_m: 0.1 - 1e-6,
+        after_release_s: f64::INFINITY,
         breakaway_travel_m: 2.5e-5,
         peak_force_max_n: f64::INFINITY,
         jump_max_m: f64::INFINITY,

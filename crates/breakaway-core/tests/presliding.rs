@@ -23,7 +23,8 @@ fn cycles(law: Lugre<f64>, amplitude_m: f64, frequency_hz: f64, count: usize) ->
     let joint = Joint::Lugre(law);
     let rates = |t: f64, z: f64| {
         let v = amplitude_m * omega * (omega * t).cos();
-        let bristle = joint.freeze(&JointState { bristle_m: z, sliding: 0.0 }, 0.0, v, 1.0);
+        let state = JointState { bristle_m: z, sliding: 0.0 };
+        let bristle = joint.freeze(&state, 0.0, v, 1.0).expect("LuGre has one");
         let rate = bristle.rate(v, z);
         let slip = law.stiffness_n_per_m * z * (v - rate);
         [rate, bristle.force(v, z, rate) * v, slip]
@@ -138,6 +139,7 @@ fn the_two_region_law_does_not_drift() {
             damping_n_s_per_m: law.damping_n_s_per_m,
             engagement_length_m: law.engagement_length_m,
             residual_n: law.residual_n,
+            backward_ratio: None,
         }),
         0.0,
     );

@@ -2,14 +2,15 @@
 //! alone: the Stribeck curve, equations (4) and (8). The code never computes that curve; it has to
 //! come out of the bristle's differential equation.
 
-use breakaway_core::joint::{Bristle, Joint, JointState, Law, Lugre};
+use breakaway_core::joint::{Joint, JointState, Law, Lugre};
 use breakaway_core::test_models::paper_joint;
 
 /// The joint force after the bristle has settled at velocity `v` and position `x`: the bristle
 /// equation (2) integrated by a Runge-Kutta method of order four for 50 of its time constants.
 fn settled_force(law: Lugre<f64>, x: f64, v: f64) -> f64 {
     let state = JointState { bristle_m: 0.0, sliding: 0.0 };
-    let bristle: Bristle<f64> = Joint::Lugre(law).freeze(&state, x, v, 1.0);
+    let joint = Joint::Lugre(law);
+    let bristle = joint.freeze(&state, x, v, 1.0).expect("LuGre has one");
     let h = 0.1 * bristle.friction_level_n / bristle.relaxation();
     let mut z = 0.0;
     for _ in 0..500 {

@@ -13,6 +13,7 @@ fn joint() -> Joint<f64> {
         damping_n_s_per_m: 9000.0,
         engagement_length_m: 0.1,
         residual_n: 9.81,
+        backward_ratio: None,
     })
 }
 

@@ -75,7 +75,8 @@ fn the_loop_runs_the_same_in_other_units() {
                 (ExtractionState::at_rest(), ExtractionState::at_rest());
             let (mut metrics, mut their_metrics) = (Metrics::new(), Metrics::new());
             for n in 0..20_000 {
-                let draws = Draws { disturbance: f64::from(n / 10 * 7 % 11) / 5.5 - 1.0 };
+                let disturbance = f64::from(n / 10 * 7 % 11) / 5.5 - 1.0;
+                let draws = Draws { disturbance, ..Draws::none() };
                 metrics.update(Groups::ALL, &limits, &ours.step(&mut state, draws));
                 their_metrics.update(
                     Groups::ALL,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 from collections.abc import Iterator, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_origin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,6 +92,8 @@ def _numbers(model: BaseModel, prefix: str) -> Iterator[str]:
 
 def _is_number(annotation: object) -> bool:
     """Whether a field holds a number, maybe one within bounds or one that may be left out."""
+    if get_origin(annotation) is tuple:  # a list of numbers is none
+        return False
     return annotation is float or any(map(_is_number, getattr(annotation, "__args__", ())))
 
 

@@ -110,8 +110,22 @@ def simulate_many(
     check_paths(nominal, vary or {})
     columns = _columns(nominal, vary or {}, range(first, first + count), design)
     check_values(nominal, columns, first)
-    shared, varied = core_columns(nominal, columns)
     run_index = np.arange(first, first + count, dtype=np.uint64)
+    tell = None if progress is None else lambda done: progress(done, count)
+    return run_columns(nominal, run_index, columns, names, workers or 1, tell, instructions)
+
+
+def run_columns(
+    nominal: Scenario,
+    run_index: NDArray[np.uint64],
+    columns: Mapping[str, NDArray[np.float64]],
+    names: Sequence[str],
+    threads: int,
+    tell: Callable[[int], None] | None = None,
+    instructions: str | None = None,
+) -> Batch:
+    """Run any runs of a scenario whose controller is designed, with the values of each; unchecked."""
+    shared, varied = core_columns(nominal, columns)
     for column in (run_index, *columns.values()):
         column.setflags(write=False)
     figures, codes = _core.run_many(
@@ -120,14 +134,14 @@ def simulate_many(
         [(place, np.ascontiguousarray(column)) for place, column in varied],
         [name for name in names if name != "outcome"],
         "outcome" in names,
-        workers or 1,
+        threads,
         instructions or _core.instructions()[0],
-        lambda done: progress(done, count) if progress else None,
+        tell or (lambda _done: None),
     )
     return Batch(
         scenario=nominal,
         run_index=run_index,
-        varied=MappingProxyType(columns),
+        varied=MappingProxyType(dict(columns)),
         metrics=MappingProxyType({name: np.frombuffer(v) for name, v in figures.items()}),
         outcome_codes=np.frombuffer(codes, dtype=np.uint8) if "outcome" in names else None,
     )

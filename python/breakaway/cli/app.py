@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from breakaway.cli.compare import compare
 from breakaway.cli.design import design
 from breakaway.cli.events import events
 from breakaway.cli.identify import identify
@@ -16,6 +17,7 @@ from breakaway.cli.run import run
 from breakaway.cli.scenarios import init, presets, schema
 from breakaway.cli.show import ClosedOutput, say
 from breakaway.cli.study import study
+from breakaway.cli.tune import tune
 from breakaway.errors import BreakawayError
 
 INTERRUPTED = 130
@@ -106,6 +108,21 @@ app.command(
         "breakaway study spread.toml --out result --json | jq .result",
     )
 )(study)
+app.command(
+    epilog=_examples(
+        "breakaway tune gentle.toml --out tuned",
+        "breakaway tune gentle.toml --out tuned --resume --trials 200",
+        "breakaway tune gentle.toml --out tuned --json | jq .result",
+    )
+)(tune)
+app.command(
+    epilog=_examples(
+        "breakaway compare --runs 200 --out gallery",
+        "breakaway compare my_parts.toml --method steady_feed --method mine.toml --out gallery",
+        "breakaway compare --laws lugre,coulomb_stiction --runs 100 --seed 7 --out laws",
+        "breakaway compare gallery/comparison.toml --out again",
+    )
+)(compare)
 app.command(
     epilog=_examples(
         "breakaway design paper_as_computed",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 
+from breakaway.design.stribeck import FrictionLaw, bristles
 from breakaway.errors import ScenarioError
-from breakaway.scenario.joint import SeizedJoint
 
 GRAVITY_M_PER_S2 = 9.81
 """Standard gravity, as rounded by the paper's own gains."""
@@ -38,13 +38,13 @@ class GainSet:
     """omega, from the settling time."""
 
 
-def residual_n(joint: SeizedJoint, mass_kg: float) -> float:
+def residual_n(joint: FrictionLaw, mass_kg: float) -> float:
     """Friction left at the end of the guide, in N: the joint's own, or the weight m g."""
     return mass_kg * GRAVITY_M_PER_S2 if joint.residual_n is None else joint.residual_n
 
 
 def pole_placement(
-    joint: SeizedJoint,
+    joint: FrictionLaw,
     *,
     mass_kg: float,
     settling_time_s: float,
@@ -66,7 +66,7 @@ def pole_placement(
 
     Parameters
     ----------
-    joint : Lugre or TwoRegion
+    joint : AnyJoint
         Its stiffness k_e, damping c, Coulomb force F_c0, length l_f and residual force are used.
     mass_kg : float
         m, above 0.
@@ -86,7 +86,8 @@ def pole_placement(
     Raises
     ------
     ScenarioError
-        A parameter is out of range, or F_c0 does not exceed the residual force.
+        A parameter is out of range, F_c0 does not exceed the residual force, or the law has no
+        stiffness.
 
     Notes
     -----
@@ -111,6 +112,11 @@ def pole_placement(
     )
     if not 0.0 <= static_share <= 1.0:
         raise ScenarioError(f"static_share: {static_share!r} is not within 0 to 1")
+    elastic = bristles(joint)
+    if elastic is None:
+        raise ScenarioError(
+            f"joint.law: {joint.law!r} has no stiffness to place poles by; give gains as numbers"
+        )
     end_n = residual_n(joint, mass_kg)
     if joint.coulomb_n <= end_n:
         raise ScenarioError(
@@ -127,7 +133,7 @@ def pole_placement(
     second_order = 2.0 * damping_ratio * w
     k_wanted, c_wanted, ki = (w * w + a * second_order) * m, (second_order + a) * m, a * w * w * m
     static = PidGains(
-        kp=k_wanted - joint.stiffness_n_per_m, ki=ki, kd=c_wanted - joint.damping_n_s_per_m
+        kp=k_wanted - elastic.stiffness_n_per_m, ki=ki, kd=c_wanted - elastic.damping_n_s_per_m
     )
     dynamic = PidGains(kp=k_wanted / m2 - 1.0, ki=ki / m2, kd=c_wanted / m2)
     total = _weighted(static_share, static, dynamic)

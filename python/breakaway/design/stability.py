@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from breakaway.design.pole_placement import PidGains, check_positive
+from breakaway.design.stribeck import FrictionLaw, StribeckLaw, bristles, stribeck_slope
 from breakaway.errors import ScenarioError
-from breakaway.scenario.joint import Lugre, SeizedJoint
 
 
 @dataclass(frozen=True)
@@ -27,15 +27,15 @@ class LoopStability:
 class Stability:
     """Verdicts for both regimes, and on self-excited oscillation."""
 
-    stuck: LoopStability
-    """Around the bristle's spring and damper."""
+    stuck: LoopStability | None
+    """Around the bristle's spring and damper; None for a law without stiffness."""
     sliding: LoopStability
     """Around a mass on which friction is constant."""
     stribeck: str
     """What the falling friction curve does to the sliding loop at low speed."""
 
 
-def stability(gains: PidGains, joint: SeizedJoint, mass_kg: float) -> Stability:
+def stability(gains: PidGains, joint: FrictionLaw, mass_kg: float) -> Stability:
     """Judge a continuous PID loop around a joint by Routh and Hurwitz.
 
     The loop ``m x'' + (c + kd) x' + (k_e + kp) x + ki integral(x) = 0`` (stuck; sliding without c
@@ -46,7 +46,7 @@ def stability(gains: PidGains, joint: SeizedJoint, mass_kg: float) -> Stability:
     ----------
     gains : PidGains
         The gains that run.
-    joint : Lugre or TwoRegion
+    joint : AnyJoint
         The joint.
     mass_kg : float
         m, above 0.
@@ -67,11 +67,15 @@ def stability(gains: PidGains, joint: SeizedJoint, mass_kg: float) -> Stability:
 
     """
     check_positive(mass_kg=mass_kg)
-    k_e, c = joint.stiffness_n_per_m, joint.damping_n_s_per_m
+    stuck = None
+    elastic = bristles(joint)
+    if elastic is not None:
+        k_e, c = elastic.stiffness_n_per_m, elastic.damping_n_s_per_m
+        stuck = _routh_hurwitz(c + gains.kd, k_e + gains.kp, gains.ki, mass_kg)
     return Stability(
-        stuck=_routh_hurwitz(c + gains.kd, k_e + gains.kp, gains.ki, mass_kg),
+        stuck=stuck,
         sliding=_routh_hurwitz(gains.kd, gains.kp, gains.ki, mass_kg),
-        stribeck=_stribeck_verdict(gains.kd, joint),
+        stribeck=_stribeck_verdict(gains, joint, mass_kg),
     )
 
 
@@ -96,17 +100,23 @@ def _routh_hurwitz(damping: float, stiffness: float, ki: float, mass_kg: float) 
     return LoopStability(stable, poles, reason)
 
 
-def _stribeck_verdict(kd: float, joint: SeizedJoint) -> str:
-    """Compare kd with the steepest fall of g(v), at v = v_s / sqrt(2)."""
-    if not isinstance(joint, Lugre):
+def _stribeck_verdict(gains: PidGains, joint: FrictionLaw, mass_kg: float) -> str:
+    """Routh's condition with the steepest fall of g(v) + sigma_2 v, at v = v_s / sqrt(2)."""
+    if not isinstance(joint, StribeckLaw):
         return "this law has no falling friction curve"
-    v_s = joint.stribeck_velocity_m_per_s
-    drop = joint.stiction_n - joint.coulomb_n
-    slope = float(np.sqrt(2.0 / np.e) * drop / v_s) - joint.viscous_n_s_per_m
-    at = v_s / np.sqrt(2.0)
-    if slope <= kd:
-        return f"steepest fall {slope:.4g} N s/m at {at:.3g} m/s, kd = {kd:.4g} damps it"
+    at = joint.stribeck_velocity_m_per_s / np.sqrt(2.0)
+    slope = -stribeck_slope(joint, at)
+    kd = gains.kd
+    where = f"steepest fall {slope:.4g} N s/m at {at:.3g} m/s"
+    if slope > kd:
+        return f"{where} exceeds kd = {kd:.4g}: expect self-excited oscillation at low speed"
+    damps = f"{where}, kd = {kd:.4g} damps it"
+    if slope <= 0.0 or gains.kp <= 0.0 or gains.ki <= 0.0:
+        return damps
+    needed = gains.ki * mass_kg / gains.kp
+    if kd - slope > needed:
+        return damps
     return (
-        f"steepest fall {slope:.4g} N s/m at {at:.3g} m/s exceeds kd = {kd:.4g}: expect "
+        f"{where} and the integral's {needed:.4g} N s/m exceed kd = {kd:.4g}: expect "
         "self-excited oscillation at low speed"
     )

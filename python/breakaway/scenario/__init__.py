@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
-from breakaway.scenario.actuator import IdealActuator, PushOnlyActuator
+from breakaway.scenario.actuator import (
+    Contact,
+    FeedAxis,
+    ForceActuator,
+    IdealActuator,
+    Piezo,
+    PushOnlyActuator,
+    RigidTip,
+)
 from breakaway.scenario.controller import (
+    FeedSettings,
     FmPulses,
     FmVibration,
+    ForceRamp,
     Gains,
     Pid,
     PidSettings,
     PolePlacement,
+    StackPulses,
+    SteadyFeed,
+    TimedImpacts,
     TwoStep,
+    VibratedFeed,
     gain_sets,
 )
 from breakaway.scenario.distribution import (
@@ -27,14 +41,35 @@ from breakaway.scenario.disturbance import (
     UniformDisturbance,
 )
 from breakaway.scenario.files import (
+    load_method,
+    load_population,
     load_scenario,
+    load_stack,
     parse_scenario,
     preset_names,
     save_scenario,
     scenario_schema,
     scenario_toml,
 )
-from breakaway.scenario.joint import Lugre, Part, SeizedJoint, TwoRegion
+from breakaway.scenario.joint import (
+    CoulombStiction,
+    ElastoPlastic,
+    Gms,
+    Lugre,
+    Part,
+    SeizedJoint,
+    StribeckJoint,
+    TwoRegion,
+)
+from breakaway.scenario.method import Method
+from breakaway.scenario.population import (
+    LAWS,
+    Gentleness,
+    Law,
+    LawNumbers,
+    PartDistributions,
+    PartPopulation,
+)
 from breakaway.scenario.reference import (
     MinimumJerk,
     RampReference,
@@ -43,31 +78,56 @@ from breakaway.scenario.reference import (
 )
 from breakaway.scenario.run import Limits, Timing, Trace
 from breakaway.scenario.scenario import Scenario
+from breakaway.scenario.sensor import ForceSensor, PositionSensor, Sensors, Watch
 
 __all__ = [
+    "LAWS",
     "BandLimitedDisturbance",
+    "Contact",
+    "CoulombStiction",
     "Distribution",
+    "ElastoPlastic",
+    "FeedAxis",
+    "FeedSettings",
     "FmPulses",
     "FmVibration",
+    "ForceActuator",
+    "ForceRamp",
+    "ForceSensor",
     "Gains",
     "GaussianDisturbance",
+    "Gentleness",
+    "Gms",
     "IdealActuator",
+    "Law",
+    "LawNumbers",
     "Limits",
     "LogNormal",
     "LogUniform",
     "Lugre",
+    "Method",
     "MinimumJerk",
     "Normal",
     "Part",
+    "PartDistributions",
+    "PartPopulation",
     "Pid",
     "PidSettings",
+    "Piezo",
     "PolePlacement",
+    "PositionSensor",
     "PushOnlyActuator",
     "RampReference",
+    "RigidTip",
     "Samples",
     "Scenario",
     "SeizedJoint",
+    "Sensors",
+    "StackPulses",
+    "SteadyFeed",
     "StepReference",
+    "StribeckJoint",
+    "TimedImpacts",
     "Timing",
     "Trace",
     "TrapezoidalVelocity",
@@ -75,8 +135,13 @@ __all__ = [
     "TwoStep",
     "Uniform",
     "UniformDisturbance",
+    "VibratedFeed",
+    "Watch",
     "gain_sets",
+    "load_method",
+    "load_population",
     "load_scenario",
+    "load_stack",
     "parse_scenario",
     "preset_names",
     "save_scenario",

@@ -125,13 +125,177 @@ class TwoStep(Model):
     """Travel at which the joint counts as loose, in m; above stiction_n / stiffness_n_per_m."""
 
 
-Controller = Annotated[Pid | FmVibration | TwoStep, Field(discriminator="kind")]
+class ForceRamp(Model):
+    """The naive way: a force that grows at a constant rate until the part is out.
+
+    A part that breaks loose under it is thrown out by what goes on growing: the baseline that
+    shows why a force alone is not gentle.
+    """
+
+    kind: Literal["force_ramp"] = "force_ramp"
+    """The kind of controller."""
+    rate_n_per_s: Positive
+    """Rate of the force, in N/s."""
+    travel_m: Positive
+    """Travel at which the part is out, in m."""
 
 
-def gain_sets(controller: Pid | FmVibration | TwoStep) -> dict[str, Gains | PolePlacement]:
-    """Every set of gains of a controller, by its path within it."""
+class FeedSettings(Model):
+    """A slow approach for a set time, then a constant speed."""
+
+    speed_m_per_s: Positive
+    """Speed of the feed, in m/s."""
+    approach_m_per_s: Positive
+    """Speed of the approach, in m/s: a tool that closes its gap fast strikes."""
+    approach_s: NotNegative
+    """Duration of the approach, in s."""
+
+
+class SteadyFeed(FeedSettings):
+    """The stiff way: an approach, then a constant speed of the feed, without any sensing."""
+
+    kind: Literal["steady_feed"] = "steady_feed"
+    """The kind of controller."""
+
+
+class TimedImpacts(Model):
+    """Impacts that end as soon as the part slips, or at a ceiling. No friction parameter is needed.
+
+    The force grows exponentially, so that an overshoot is relative, and is cut when
+    ``(x - x0) + lead * velocity`` reaches the step, or the force reaches a ceiling that creeps up
+    until the part slips: what slips at the peak slips under a force that already falls. The part
+    coasts to rest before the next impact.
+
+    Examples
+    --------
+    >>> TimedImpacts(travel_m=0.1, target_s=8.0).restart_ratio
+    0.6
+
+    """
+
+    kind: Literal["timed_impacts"] = "timed_impacts"
+    """The kind of controller."""
+    travel_m: Positive
+    """Travel at which the part is out, in m."""
+    target_s: Positive
+    """When it should be out, in s: steps grow, within their limits, to keep it."""
+    force_start_n: Positive = 30.0
+    """Force at which the first search begins, in N."""
+    search_time_constant_s: Positive = 15e-3
+    """Time in which the force grows by e while the joint is searched for, in s."""
+    rise_time_constant_s: Positive = 2e-3
+    """Time in which it grows by e once something has slipped, in s."""
+    slowing_m_per_s: NotNegative = 0.01
+    """Velocity above which the force grows slower, in m/s."""
+    holding_m_per_s: Positive = 0.03
+    """Velocity above which the force does not grow, in m/s."""
+    step_min_m: Positive = 30e-6
+    """Smallest step, in m."""
+    step_max_m: Positive = 110e-6
+    """Largest step, in m."""
+    travel_min_m: NotNegative = 6e-6
+    """Travel below which nothing counts as a slip, in m."""
+    restart_ratio: Fraction = 0.6
+    """Share of the ceiling at which an impact begins."""
+    probe_ratio: NotNegative = 0.06
+    """Share by which a fruitless impact raises the ceiling."""
+    breakaway_share: Fraction = 0.3
+    """Share by which the ceiling follows the force of a slip that was seen."""
+    coast_min_s: NotNegative = 1e-3
+    """Shortest coast, in s."""
+    settled_m: Positive = 3e-6
+    """Difference of two means over ten samples at which the part is at rest, in m."""
+    lead_start_s: NotNegative = 1e-3
+    """Lead at the start, in s."""
+    lead_min_s: NotNegative = 1e-4
+    """Smallest lead, in s."""
+    lead_max_s: NotNegative = 1e-2
+    """Largest lead, in s."""
+    noise_rms_m: NotNegative = 1e-6
+    """Deviation of the position sensor's noise, as known, in m."""
+    noise_margin: NotNegative = 2.0
+    """Deviations of noise that a slope must exceed to count."""
+    free_margin_m: NotNegative = 3e-6
+    """Distance beyond travel_m at which the part is taken as free, in m: noise must not do it."""
+    actuator_lag_s: NotNegative = 1.6e-4
+    """Lag of the actuator, as known, in s."""
+
+    @model_validator(mode="after")
+    def _is_in_order(self) -> Self:
+        for low, high in (
+            ("step_min_m", "step_max_m"),
+            ("lead_min_s", "lead_max_s"),
+            ("slowing_m_per_s", "holding_m_per_s"),
+        ):
+            a, b = getattr(self, low), getattr(self, high)
+            if a > b or (low == "slowing_m_per_s" and a == b):
+                raise ValueError(f"{low}: {a!r} is not below {high} = {b!r}; swap them")
+        return self
+
+
+class StackPulses(Model):
+    """Pulses of a piezo stack, in proportion to the mean of the measured force."""
+
+    frequency_hz: Positive
+    """Pulses in a second, in Hz."""
+    pulse_width_s: Positive
+    """Duration of a pulse, in s; at most 1 / frequency_hz."""
+    amplitude_ratio: NotNegative
+    """Force of a pulse over the mean of the measured force."""
+    stack_force_n: Positive
+    """Force of the full stroke against a part that does not move, as known, in N."""
+    force_filter_s: Positive = 0.02
+    """Time constant of the mean of the force, in s."""
+
+    @model_validator(mode="after")
+    def _pulses_fit(self) -> Self:
+        if self.pulse_width_s * self.frequency_hz > 1.0 + 1e-9:
+            raise ValueError(
+                f"pulse_width_s: {self.pulse_width_s!r} makes pulses overlap at frequency_hz = "
+                f"{self.frequency_hz!r}; give a width <= {1.0 / self.frequency_hz:.6g}"
+            )
+        return self
+
+
+class VibratedFeed(Model):
+    """A constant feed, on which a piezo stack superimposes pulses in proportion to the force.
+
+    The pulses break the part loose while the mean force is only ``F_s / (1 + amplitude_ratio)``; where
+    that is below the sliding friction, a slip ends with its pulse whatever a soft axis has stored. It is
+    told nothing of the part.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> bk.load_method("vibrated_feed_soft").controller.kind
+    'vibrated_feed'
+
+    """
+
+    kind: Literal["vibrated_feed"] = "vibrated_feed"
+    """The kind of controller."""
+    feed: FeedSettings
+    """The feed."""
+    pulses: StackPulses
+    """The pulses of the stack."""
+
+
+ReferenceController = Pid | FmVibration | TwoStep
+"""Controllers that follow the reference."""
+AnyController = ReferenceController | ForceRamp | SteadyFeed | TimedImpacts | VibratedFeed
+
+Controller = Annotated[
+    Pid | FmVibration | TwoStep | ForceRamp | SteadyFeed | TimedImpacts | VibratedFeed,
+    Field(discriminator="kind"),
+]
+
+
+def gain_sets(controller: AnyController) -> dict[str, Gains | PolePlacement]:
+    """Every set of gains of a controller, by its path within it; none where it has no PID."""
     if isinstance(controller, Pid):
         return {"gains": controller.gains}
+    if not isinstance(controller, FmVibration | TwoStep):
+        return {}
     sets: dict[str, Gains | PolePlacement] = {"pid.gains": controller.pid.gains}
     if isinstance(controller, TwoStep):
         sets["vibration_gains"] = controller.vibration_gains

@@ -12,7 +12,10 @@ import tomli_w
 
 from breakaway.errors import ScenarioError
 from breakaway.output import write_atomically
+from breakaway.scenario.actuator import Piezo
+from breakaway.scenario.method import Method
 from breakaway.scenario.model import Model
+from breakaway.scenario.population import PartPopulation
 from breakaway.scenario.scenario import Scenario
 
 AnyModel = TypeVar("AnyModel", bound=Model)
@@ -20,11 +23,17 @@ AnyModel = TypeVar("AnyModel", bound=Model)
 PRESETS = files("breakaway.presets")
 
 
-def preset_names() -> list[str]:
-    """Names of the presets that come with breakaway."""
-    return sorted(
-        p.name.removesuffix(".toml") for p in PRESETS.iterdir() if p.name.endswith(".toml")
-    )
+def preset_names(folder: str = "") -> list[str]:
+    """Names of the presets that come with breakaway.
+
+    Parameters
+    ----------
+    folder : {"", "populations", "methods", "stacks"}, optional
+        Which presets: scenarios, where it is left out.
+
+    """
+    presets = PRESETS / folder if folder else PRESETS
+    return sorted(p.name.removesuffix(".toml") for p in presets.iterdir() if p.name[-5:] == ".toml")
 
 
 def load_scenario(source: str | Path) -> Scenario:
@@ -51,10 +60,83 @@ def load_scenario(source: str | Path) -> Scenario:
     breakaway.errors.ScenarioError: paper_as_computd: ... did you mean paper_as_computed?
 
     """
-    if isinstance(source, str) and source in preset_names():
-        text = (PRESETS / f"{source}.toml").read_text(encoding="utf-8")
-        return parse_scenario(text, source)
-    return parse_scenario(_read(Path(source)), str(source))
+    return _load(Scenario, source, "")
+
+
+def load_population(source: str | Path) -> PartPopulation:
+    """Load a population of parts: a preset by its name, or a TOML file by its path.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, such as ``seized_parts``, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> load_population("seized_parts").duration_s
+    10.0
+
+    """
+    return _load(PartPopulation, source, "populations")
+
+
+def load_method(source: str | Path) -> Method:
+    """Load a way to free parts: a preset by its name, or a TOML file by its path.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, such as ``timed_impacts``, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> load_method("steady_feed").actuator.kind
+    'feed_axis'
+
+    """
+    return _load(Method, source, "methods")
+
+
+def load_stack(source: str | Path) -> Piezo:
+    """Load a piezo stack with its amplifier: a preset by its name, or a TOML file by its path.
+
+    Each preset says where its figures are from, and which of them are estimates.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, such as ``pi_p888_91_pd200``, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> stack = load_stack("pi_p888_91_pd200")
+    >>> round(stack.stiffness_n_per_m * stack.stroke_m)  # blocking force, N
+    3800
+
+    """
+    return _load(Piezo, source, "stacks")
+
+
+def _load(model: type[AnyModel], source: str | Path, folder: str) -> AnyModel:
+    if isinstance(source, str) and source in preset_names(folder):
+        text = PRESETS.joinpath(*folder.split(), f"{source}.toml").read_text(encoding="utf-8")
+        return parse_toml(model, text, source)
+    return parse_toml(model, _read(Path(source), preset_names(folder)), str(source))
 
 
 def parse_scenario(text: str, source: str) -> Scenario:
@@ -85,12 +167,12 @@ def parse_toml(model: type[AnyModel], text: str, source: str) -> AnyModel:
         ) from None
 
 
-def _read(path: Path) -> str:
+def _read(path: Path, presets: list[str]) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
-        near = difflib.get_close_matches(str(path), preset_names(), n=1, cutoff=0.5)
-        hint = f"did you mean {near[0]}?" if near else f"presets: {', '.join(preset_names())}"
+        near = difflib.get_close_matches(str(path), presets, n=1, cutoff=0.5)
+        hint = f"did you mean {near[0]}?" if near else f"presets: {', '.join(presets)}"
         raise ScenarioError(f"{path}: is neither a file nor a preset; {hint}") from None
     except (OSError, UnicodeDecodeError) as error:
         raise ScenarioError(f"{path}: can not be read as text: {error}") from None

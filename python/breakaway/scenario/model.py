@@ -93,6 +93,7 @@ _TYPE_NAMES = {
     "model_type": "a table of keys",
     "model_attributes_type": "a table of keys",
     "dict_type": "a table of keys",
+    "tuple_type": "a list of numbers",
 }
 
 
@@ -179,6 +180,7 @@ def valid_range(owner: type[BaseModel] | None, name: str) -> str:
         "integer": "a whole number",
         "boolean": "true or false",
         "string": "a text",
+        "array": "a list of numbers",
     }.get(option.get("type", ""), "a table")
     return f"{word} {bounds}".strip()
 

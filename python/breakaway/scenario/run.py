@@ -42,6 +42,8 @@ class Limits(Model):
     release_tolerance_m: NotNegative = 1e-6
     """The part counts as free this far before the end of the guide, in m: a reference that ends
     there is approached from below."""
+    after_release_s: NotNegative | None = None
+    """The run ends this long after the release, in s. Left out: it runs for its duration."""
     breakaway_travel_m: Positive | None = None
     """Travel at which the joint counts as loose, in m. Left out: 2 stiction_n /
     stiffness_n_per_m."""

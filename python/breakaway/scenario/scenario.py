@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import ceil, sqrt
+from math import ceil, isfinite, sqrt
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Field, model_validator
 
 from breakaway.errors import ScenarioError
-from breakaway.scenario.actuator import Actuator, IdealActuator
-from breakaway.scenario.controller import Controller, FmVibration, Pid, TwoStep
+from breakaway.scenario.actuator import Actuator, FeedAxis, ForceActuator, IdealActuator, Piezo
+from breakaway.scenario.controller import (
+    Controller,
+    FmVibration,
+    Pid,
+    SteadyFeed,
+    TwoStep,
+    VibratedFeed,
+)
 from breakaway.scenario.disturbance import Disturbance, UniformDisturbance
 from breakaway.scenario.joint import Joint, Part
 from breakaway.scenario.model import Model
 from breakaway.scenario.reference import Reference, StepReference
 from breakaway.scenario.run import Limits, Timing, Trace
+from breakaway.scenario.sensor import Sensors, Watch
 
 SAMPLES_MAX = 4_000_000_000
 """Most integration steps of one run."""
@@ -61,6 +69,10 @@ class Scenario(Model):
     """What is not known of the joint force."""
     actuator: Actuator = IdealActuator()
     """What pushes."""
+    sensors: Sensors | None = None
+    """What the controller sees through. Left out: it sees what is."""
+    watch: Watch | None = None
+    """What stops the controller where its sensors can not be right. Left out: nothing."""
     controller: Controller
     """What decides how hard."""
     timing: Timing
@@ -102,6 +114,8 @@ class Scenario(Model):
     @model_validator(mode="after")
     def _steps_are_short(self) -> Self:
         timing, k_e, m = self.timing, self.joint.stiffness_n_per_m, self.part.mass_kg
+        if not isfinite(k_e):
+            return self._rk4_steps_a_bristle()
         step_s = timing.control_period_s / timing.steps_per_period
         longest_s, rule = 0.3 * sqrt(m / k_e), "0.3 sqrt(part.mass_kg / joint.stiffness_n_per_m)"
         if timing.integrator == "rk4":
@@ -117,6 +131,14 @@ class Scenario(Model):
                 f"timing.steps_per_period: {timing.steps_per_period!r} makes steps of {step_s:.4g} "
                 f"s of timing.control_period_s = {timing.control_period_s!r}, not <= {rule} = "
                 f"{longest_s:.4g} s, so the bristle is not resolved; {remedy}"
+            )
+        return self
+
+    def _rk4_steps_a_bristle(self) -> Self:
+        if self.timing.integrator == "rk4":
+            raise ValueError(
+                f"timing.integrator: 'rk4' does not step joint.law = {self.joint.law!r}; give "
+                "'linearly_implicit_midpoint'"
             )
         return self
 
@@ -143,12 +165,36 @@ class Scenario(Model):
     @model_validator(mode="after")
     def _tracks_no_faster_than_it_samples(self) -> Self:
         controller, period = self.controller, self.timing.control_period_s
+        if not isinstance(controller, Pid | FmVibration | TwoStep):
+            return self
         pid = controller if isinstance(controller, Pid) else controller.pid
         if pid.anti_windup == "back_calculation" and pid.tracking_time_s < period * (1 - 1e-9):
             where = "controller" if pid is controller else "controller.pid"
             raise ValueError(
                 f"{where}.tracking_time_s: {pid.tracking_time_s!r} is not >= "
                 f"timing.control_period_s = {period!r}; the back calculation would overshoot"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _actuator_heeds_its_controller(self) -> Self:
+        feeds = isinstance(self.controller, SteadyFeed | VibratedFeed)
+        if feeds != isinstance(self.actuator, FeedAxis):
+            wanted = "feed_axis" if feeds else "ideal, push_only or force"
+            raise ValueError(
+                f"actuator.kind: {self.actuator.kind!r} can not do what controller.kind = "
+                f"{self.controller.kind!r} asks; give {wanted}"
+            )
+        tip = self.actuator.tip if isinstance(self.actuator, FeedAxis) else None
+        if isinstance(self.controller, VibratedFeed) and not isinstance(tip, Piezo):
+            raise ValueError(
+                "actuator.tip.kind: 'rigid' can not do what controller.kind = 'vibrated_feed' asks; "
+                "give 'piezo'"
+            )
+        if self.timing.integrator == "rk4" and isinstance(self.actuator, FeedAxis | ForceActuator):
+            raise ValueError(
+                f"timing.integrator: 'rk4' does not step an actuator of kind "
+                f"{self.actuator.kind!r}; give 'linearly_implicit_midpoint'"
             )
         return self
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
 from breakaway.scenario.scenario import Scenario
+from breakaway.studies.base import percent
 from breakaway.studies.levels import Level
 from breakaway.studies.plan import (
     Plan,
@@ -22,7 +23,7 @@ from breakaway.studies.plan import (
 )
 from breakaway.studies.points import Point, parts_drawn
 from breakaway.studies.statistics import clopper_pearson, mcnemar, median_interval
-from breakaway.studies.study import CompareStudy, Study, percent
+from breakaway.studies.study import CompareStudy, Study
 
 CONTROLLER = "controller"
 """Column that tells controllers apart."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from importlib.metadata import version
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +63,7 @@ def manifest_of(study: Study, plan: Plan) -> dict[str, Any]:
             for f in schema
         ],
     }
-    return manifest | {"identity": _identity(manifest)}
+    return manifest | {"identity": identity_of(manifest)}
 
 
 def _libraries(study: Study) -> dict[str, str]:
@@ -70,7 +72,8 @@ def _libraries(study: Study) -> dict[str, str]:
     return {name: version(name) for name in names}
 
 
-def _identity(manifest: Mapping[str, Any]) -> str:
+def identity_of(manifest: Mapping[str, Any]) -> str:
+    """Give a digest of all in a manifest that results depend on."""
     text = json.dumps(_deciding(manifest))  # in the order of the keys, on which draws depend
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -108,8 +111,12 @@ def read_manifest(folder: Path) -> dict[str, Any]:
 
 
 @contextmanager
-def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
+def prepared(
+    folder: Path, manifest: Mapping[str, Any], *, resume: bool, called: str = "study"
+) -> Iterator[None]:
     """Hold a folder for a study: a new one, or the same one to go on with.
+
+    What it is ``called`` stands in errors.
 
     Raises
     ------
@@ -123,14 +130,16 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
     existed = folder.exists()
     found = (folder / MANIFEST).exists()
     if found:
-        _refuse_other(folder, read_manifest(folder), manifest, resume=resume)
+        _refuse_other(folder, read_manifest(folder), manifest, resume=resume, called=called)
     elif (folder / PARTS).exists() and any((folder / PARTS).iterdir()):
-        raise StudyError(f"{folder}: holds parts of a study but no {MANIFEST}; give another folder")
+        raise StudyError(
+            f"{folder}: holds parts of a {called} but no {MANIFEST}; give another folder"
+        )
     try:
         (folder / PARTS).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise not_written(folder, error) from None
-    with _locked(folder):
+    with _locked(folder, called):
         _remove_leftovers(folder)
         if not found:
             try:
@@ -142,19 +151,24 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
 
 
 def _refuse_other(
-    folder: Path, found: Mapping[str, Any], manifest: Mapping[str, Any], *, resume: bool
+    folder: Path,
+    found: Mapping[str, Any],
+    manifest: Mapping[str, Any],
+    *,
+    resume: bool,
+    called: str,
 ) -> None:
     if found["identity"] != manifest["identity"]:
         differences = list(_differences(_deciding(found), _deciding(manifest), ""))
         said = "; ".join(differences[:3]) or "the order of its keys"
         more = f"; and {len(differences) - 3} more" if len(differences) > 3 else ""
         raise StudyError(
-            f"{folder}: holds another study: {said}{more}; give another folder, or the study "
-            "that was begun"
+            f"{folder}: holds another {called}: {said}{more}; give another folder, or the "
+            f"{called} that was begun"
         )
     if not resume:
         raise StudyError(
-            f"{folder}: already holds this study; go on with --resume, or give another folder"
+            f"{folder}: already holds this {called}; go on with --resume, or give another folder"
         )
 
 
@@ -173,7 +187,7 @@ def _short(value: object) -> str:
 
 
 @contextmanager
-def _locked(folder: Path) -> Iterator[None]:
+def _locked(folder: Path, called: str) -> Iterator[None]:
     """Keep other processes out; the lock ends with the process, however that ends."""
     try:
         fcntl: Any = import_module("fcntl")
@@ -190,7 +204,7 @@ def _locked(folder: Path) -> Iterator[None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise StudyError(
-                f"{folder}: another process is running this study; wait for it, or end it"
+                f"{folder}: another process is running this {called}; wait for it, or end it"
             ) from None
         except OSError:  # a file system without locks
             pass
@@ -220,6 +234,16 @@ def _remove_made(folder: Path, *, existed: bool) -> None:
 def as_json(content: object) -> bytes:
     """Give a JSON document, the same for the same content."""
     return (json.dumps(content, indent=2, allow_nan=False) + "\n").encode()
+
+
+def as_csv(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Give rows as a table with all their columns; what is None is empty."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    text = StringIO()
+    writer = csv.DictWriter(text, names, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
 
 
 def not_written(path: Path, error: OSError) -> OutputError:

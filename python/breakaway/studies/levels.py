@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import isfinite
+from math import ceil, isfinite
 from typing import Any, get_args
 
 import numpy as np
@@ -72,6 +72,21 @@ def grid_levels(tables: object) -> object:
     if not isinstance(tables, Mapping):
         return tables
     return {path: _levels(path, values) for path, values in _flat(tables)}
+
+
+def stepped_levels(low: float, high: float, resolution: float) -> list[float]:
+    """Give the levels that a search may try: low, low + resolution, ..., high.
+
+    Examples
+    --------
+    >>> stepped_levels(0.1, 0.45, 0.1)
+    [0.1, 0.2, 0.3, 0.4, 0.45]
+
+    """
+    steps = ceil((high - low) / resolution - 1e-9)
+    # Twelve digits, so that a level reads as it was meant: 0.3 and not 0.30000000000000004.
+    inner = [float(f"{low + k * resolution:.12g}") for k in range(1, steps)]
+    return [low, *inner, high]
 
 
 def _levels(path: str, values: object) -> list[Level]:

@@ -15,6 +15,7 @@ from breakaway._core import OUTCOMES
 from breakaway.batch.batch import Batch, unit_of
 from breakaway.output import write_atomically
 from breakaway.studies.levels import Level
+from breakaway.studies.part_files import as_bytes, flaw_of
 from breakaway.studies.points import Point
 
 PARTS = "parts"
@@ -90,7 +91,7 @@ class Parts:
         """
         arrow: Any = import_module("pyarrow")
         tables = [self._table(piece, point, batch) for piece, point, batch in pieces]
-        write_atomically(self.path(number), _as_bytes(arrow.concat_tables(tables)))
+        write_atomically(self.path(number), as_bytes(arrow.concat_tables(tables)))
 
     def _table(self, piece: Piece, point: Point, batch: Batch) -> Any:  # noqa: ANN401 - no stubs
         arrow: Any = import_module("pyarrow")
@@ -108,27 +109,10 @@ class Parts:
         return arrow.Table.from_arrays(arrays, schema=self._schema)
 
     def flaw(self, number: int, pieces: Sequence[Piece], points: Sequence[Point]) -> str | None:
-        """Say what is wrong with the file of a part, None where nothing is.
-
-        Every page is read against its checksum. What no checksum covers is compared with what
-        the same runs would be written as, where the same version of pyarrow wrote it.
-        """
-        parquet: Any = import_module("pyarrow.parquet")
-        try:
-            content = self.path(number).read_bytes()
-            source = import_module("pyarrow").BufferReader(content)
-            reader = parquet.ParquetFile(source, page_checksum_verification=True)
-            table = reader.read(use_threads=False)
-        except Exception as error:  # a damaged file may make anything of its reader
-            return f"can not be read ({_first_line(error)})"
-        if not table.schema.equals(self._schema):
-            return "has other columns"
-        if not _has_runs(table, pieces, points):
-            return "has other runs"
-        ours = _as_bytes(table)
-        if _writer_of(content) == _writer_of(ours) and content != ours:
-            return "is damaged"
-        return None
+        """Say what is wrong with the file of a part, None where nothing is."""
+        return flaw_of(
+            self.path(number), self._schema, lambda table: _has_runs(table, pieces, points)
+        )
 
     def column(self, name: str, number: int, piece: Piece) -> NDArray[Any]:
         """Read a column of a piece; outcomes as their places among the outcomes."""
@@ -152,19 +136,6 @@ class Parts:
                 parquet.read_table(self.path(number), use_threads=False, partitioning=None),
             )
         return self._kept[1][name]
-
-
-def _as_bytes(table: Any) -> bytes:  # noqa: ANN401 - pyarrow has no type stubs
-    sink: Any = import_module("pyarrow").BufferOutputStream()
-    parquet: Any = import_module("pyarrow.parquet")
-    parquet.write_table(table.combine_chunks(), sink, write_page_checksum=True)
-    content: bytes = sink.getvalue().to_pybytes()
-    return content
-
-
-def _writer_of(content: bytes) -> str:
-    source = import_module("pyarrow").BufferReader(content)
-    return str(import_module("pyarrow.parquet").read_metadata(source).created_by)
 
 
 def _has_runs(table: Any, pieces: Sequence[Piece], points: Sequence[Point]) -> bool:  # noqa: ANN401
@@ -221,7 +192,3 @@ def _type_of(levels: Sequence[Level]) -> str:
 def _codes(batch: Batch) -> NDArray[np.int8]:
     assert batch.outcome_codes is not None  # a study always asks for it
     return batch.outcome_codes.astype(np.int8)
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).strip().split("\n")[0].rstrip(".")

@@ -14,7 +14,7 @@ from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.distribution import Distribution
 from breakaway.scenario.scenario import Scenario
 from breakaway.studies.levels import Level
-from breakaway.studies.study import StudyBase
+from breakaway.studies.base import StudyBase
 
 Columns = dict[str, NDArray[np.float64]]
 Draw = Callable[[range], Columns]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from breakaway._core import OUTCOMES
 from breakaway.batch.columns import with_nominal_controller
 from breakaway.scenario.scenario import Scenario
+from breakaway.studies.base import percent
 from breakaway.studies.levels import Level
 from breakaway.studies.plan import Plan, Row, Run, Summary, outcome_counts
 from breakaway.studies.points import Columns, Draw, Point, parts_drawn
@@ -21,7 +22,6 @@ from breakaway.studies.study import (
     RobustnessStudy,
     RobustnessTable,
     Study,
-    percent,
 )
 
 Mask = NDArray[np.bool_]
@@ -38,7 +38,7 @@ class RobustnessPlan(Plan):
     def __init__(self, study: RobustnessStudy) -> None:
         self.study = study
         self.asked = study.robustness
-        self.levels = robustness_levels(self.asked)
+        self.levels = self.asked.levels
         self.points = [self._point(level) for level in (self.levels[0], self.levels[-1])]
         self.varied = list(study.vary)
         most = 2 + ceil(log2(max(2, len(self.levels) - 1)))
@@ -145,24 +145,6 @@ class RobustnessPlan(Plan):
                 (self.levels[0], self.levels[-1]),
             )
         }
-
-
-def robustness_levels(asked: RobustnessTable) -> list[float]:
-    """Give the levels that may be tried: low, low + resolution, ..., high.
-
-    Examples
-    --------
-    >>> asked = RobustnessTable(
-    ...     over="disturbance.var", low=0.1, high=0.45, resolution=0.1, failure_probability_max=0.01
-    ... )
-    >>> robustness_levels(asked)
-    [0.1, 0.2, 0.3, 0.4, 0.45]
-
-    """
-    steps = ceil((asked.high - asked.low) / asked.resolution - 1e-9)
-    # Twelve digits, so that a level reads as it was meant: 0.3 and not 0.30000000000000004.
-    inner = [float(f"{asked.low + k * asked.resolution:.12g}") for k in range(1, steps)]
-    return [asked.low, *inner, asked.high]
 
 
 def largest_true(count: int, test: Any) -> int | None:  # noqa: ANN401 - a predicate

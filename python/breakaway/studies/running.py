@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +13,9 @@ from breakaway._core import __version__
 from breakaway.errors import OutputError, StudyError
 from breakaway.output import output_folder, write_atomically
 from breakaway.studies.compare import ComparePlan
-from breakaway.studies.folder import SUMMARY, as_json, manifest_of, prepared
+from breakaway.studies.folder import SUMMARY, as_csv, as_json, manifest_of, prepared
 from breakaway.studies.parts import Parts, Piece, label_types, laid_out
-from breakaway.studies.plan import Plan, PointRuns, Row, Summary
+from breakaway.studies.plan import Plan, PointRuns, Summary
 from breakaway.studies.points import Point
 from breakaway.studies.result import StudyResult, open_study
 from breakaway.studies.robustness import RobustnessPlan
@@ -244,7 +242,7 @@ def _write_end(study: Study, plan: Plan, summary: Summary, runs: int, folder: Pa
     }
     with output_folder(folder) as staging:
         for name, rows in summary.tables.items():
-            (staging / f"{name}.csv").write_text(_csv(rows), encoding="utf-8", newline="")
+            (staging / f"{name}.csv").write_text(as_csv(rows), encoding="utf-8", newline="")
         how = "# The whole study, its scenario within. Runs again: breakaway study study.toml\n\n"
         text = how + tomli_w.dumps(study.model_dump(exclude_none=True))
         (staging / "study.toml").write_text(text, encoding="utf-8", newline="\n")
@@ -258,12 +256,3 @@ def _save(figure: Any, path: Path) -> None:  # noqa: ANN401 - a figure of matplo
 
     for suffix in (".png", ".svg"):
         save_figure(figure, path.with_suffix(suffix))
-
-
-def _csv(rows: Sequence[Row]) -> str:
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    text = StringIO()
-    writer = csv.DictWriter(text, names, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()

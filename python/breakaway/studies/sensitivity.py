@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from breakaway.errors import StudyError
 from breakaway.scenario.scenario import Scenario
+from breakaway.studies.base import percent
 from breakaway.studies.levels import Level
 from breakaway.studies.plan import Plan, Row, Run, Summary, not_diverged
 from breakaway.studies.points import Columns, Draw, Point
-from breakaway.studies.study import SensitivityStudy, Study, percent
+from breakaway.studies.study import SensitivityStudy, Study
 
 Array = NDArray[np.float64]
 

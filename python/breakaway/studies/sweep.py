@@ -9,6 +9,7 @@ from typing import Any
 
 from breakaway.errors import StudyError
 from breakaway.scenario.scenario import Scenario
+from breakaway.studies.base import changed, percent
 from breakaway.studies.levels import Level
 from breakaway.studies.plan import (
     Plan,
@@ -21,7 +22,7 @@ from breakaway.studies.plan import (
     outcome_shares,
 )
 from breakaway.studies.points import Point, parts_drawn
-from breakaway.studies.study import Study, SweepStudy, changed, percent
+from breakaway.studies.study import Study, SweepStudy
 
 POINTS_MAX = 100_000
 """Most points of a grid."""

@@ -17,6 +17,7 @@ use core::arch::x86_64::{
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use breakaway_core::Real;
+use breakaway_core::real::Block;
 use breakaway_core::exp2::exp2_parts_in_double;
 
 use super::Wide;
@@ -70,8 +71,21 @@ impl Not for FourMask {
     }
 }
 
+/// A block as a function that may use the instructions.
+#[target_feature(enable = "avx2,fma")]
+#[inline(never)]
+unsafe fn apart<B: Block>(block: B) -> B::Output {
+    block.compute()
+}
+
 impl Real for Four {
     type Mask = FourMask;
+
+    #[inline(always)]
+    fn apart<B: Block>(block: B) -> B::Output {
+        // SAFETY: these numbers are only computed with where the processor has the instructions.
+        unsafe { apart(block) }
+    }
 
     #[inline(always)]
     fn constant(value: f64) -> Self {

@@ -3,10 +3,6 @@
 //! A lane may be one number or, where the processor has them, a vector of several. Which one a
 //! batch uses is chosen at run time ([`crate::instructions`]); all give the same bits.
 
-// Indexed loops over fixed arrays are inlined and unrolled within any caller's instruction set;
-// closures are not.
-#![allow(clippy::needless_range_loop)]
-
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2;
 #[cfg(avx512)]
@@ -15,145 +11,118 @@ pub(crate) mod avx512;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use breakaway_core::Real;
+use breakaway_core::real::Block;
 
-/// `K` numbers, or vectors of numbers, that go through the same step together.
+/// Four numbers, or vectors of numbers, that go through the same step together.
 ///
 /// Every operation is that of the number on each of them, so the bits of a lane equal those of the
-/// scalar run. One vector alone waits for its dependency chain; four hide it.
+/// scalar run. One vector alone waits for its dependency chain; four hide it. They are written out and not
+/// looped over: compilers unroll such loops one by one, and a step has tens of thousands of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lanes<V, const K: usize>(pub [V; K]);
+pub struct Lanes<V>(pub [V; 4]);
 
 /// A condition for each lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LaneMask<M, const K: usize>([M; K]);
+pub struct LaneMask<M>([M; 4]);
 
-macro_rules! lanewise {
-    ($type:ident, $bound:ident, $trait:ident, $method:ident) => {
-        impl<V: $bound<Output = V> + Copy, const K: usize> $trait for $type<V, K> {
+/// An array of what an expression gives for each of the four places.
+macro_rules! on_each {
+    (|$i:ident| $value:expr) => {
+        [
+            { const $i: usize = 0; $value },
+            { const $i: usize = 1; $value },
+            { const $i: usize = 2; $value },
+            { const $i: usize = 3; $value },
+        ]
+    };
+}
+
+macro_rules! binary {
+    ($type:ident, $trait:ident, $method:ident) => {
+        impl<V: $trait<Output = V> + Copy> $trait for $type<V> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                let mut out = self;
-                for i in 0..K {
-                    out.0[i] = self.0[i].$method(other.0[i]);
-                }
-                out
+                Self(on_each!(|I| self.0[I].$method(other.0[I])))
             }
         }
     };
 }
 
-lanewise!(Lanes, Add, Add, add);
-lanewise!(Lanes, Sub, Sub, sub);
-lanewise!(Lanes, Mul, Mul, mul);
-lanewise!(Lanes, Div, Div, div);
-lanewise!(LaneMask, BitAnd, BitAnd, bitand);
-lanewise!(LaneMask, BitOr, BitOr, bitor);
+binary!(Lanes, Add, add);
+binary!(Lanes, Sub, sub);
+binary!(Lanes, Mul, mul);
+binary!(Lanes, Div, div);
+binary!(LaneMask, BitAnd, bitand);
+binary!(LaneMask, BitOr, bitor);
 
-macro_rules! on_each {
+macro_rules! unary {
     ($type:ident, $trait:ident, $method:ident) => {
-        impl<V: $trait<Output = V> + Copy, const K: usize> $trait for $type<V, K> {
+        impl<V: $trait<Output = V> + Copy> $trait for $type<V> {
             type Output = Self;
             #[inline(always)]
             fn $method(self) -> Self {
-                let mut out = self;
-                for i in 0..K {
-                    out.0[i] = self.0[i].$method();
-                }
-                out
+                Self(on_each!(|I| self.0[I].$method()))
             }
         }
     };
 }
 
-on_each!(Lanes, Neg, neg);
-on_each!(LaneMask, Not, not);
+unary!(Lanes, Neg, neg);
+unary!(LaneMask, Not, not);
 
-impl<V: Real, const K: usize> Lanes<V, K> {
+impl<V: Real> Real for Lanes<V> {
+    type Mask = LaneMask<V::Mask>;
+    const ROUND: f64 = V::ROUND;
+
     #[inline(always)]
-    fn compare(self, other: Self, holds: impl Fn(V, V) -> V::Mask) -> LaneMask<V::Mask, K> {
-        let mut mask = LaneMask([holds(self.0[0], other.0[0]); K]);
-        for i in 1..K {
-            mask.0[i] = holds(self.0[i], other.0[i]);
-        }
-        mask
+    fn apart<B: Block>(block: B) -> B::Output {
+        V::apart(block)
     }
-}
-
-impl<V: Real, const K: usize> Real for Lanes<V, K> {
-    type Mask = LaneMask<V::Mask, K>;
-
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self([V::constant(value); K])
+        Self([V::constant(value); 4])
     }
     #[inline(always)]
     fn known(holds: bool) -> Self::Mask {
-        LaneMask([V::known(holds); K])
+        LaneMask([V::known(holds); 4])
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Self::Mask {
-        self.compare(other, V::lt)
+        LaneMask(on_each!(|I| self.0[I].lt(other.0[I])))
     }
     #[inline(always)]
     fn le(self, other: Self) -> Self::Mask {
-        self.compare(other, V::le)
+        LaneMask(on_each!(|I| self.0[I].le(other.0[I])))
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        let mut out = no;
-        for i in 0..K {
-            out.0[i] = V::select(mask.0[i], yes.0[i], no.0[i]);
-        }
-        out
+        Self(on_each!(|I| V::select(mask.0[I], yes.0[I], no.0[I])))
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        let mut out = self;
-        for i in 0..K {
-            out.0[i] = self.0[i].abs();
-        }
-        out
+        Self(on_each!(|I| self.0[I].abs()))
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        let mut out = self;
-        for i in 0..K {
-            out.0[i] = self.0[i].min(other.0[i]);
-        }
-        out
+        Self(on_each!(|I| self.0[I].min(other.0[I])))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        let mut out = self;
-        for i in 0..K {
-            out.0[i] = self.0[i].max(other.0[i]);
-        }
-        out
+        Self(on_each!(|I| self.0[I].max(other.0[I])))
     }
     #[inline(always)]
     fn max_abs(self, other: Self) -> Self {
-        let mut out = self;
-        for i in 0..K {
-            out.0[i] = self.0[i].max_abs(other.0[i]);
-        }
-        out
+        Self(on_each!(|I| self.0[I].max_abs(other.0[I])))
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        let mut out = self;
-        for i in 0..K {
-            out.0[i] = self.0[i].mul_add(factor.0[i], addend.0[i]);
-        }
-        out
+        Self(on_each!(|I| self.0[I].mul_add(factor.0[I], addend.0[I])))
     }
     #[inline(always)]
     fn exp2_parts(self) -> (Self, Self) {
-        let (mut fraction, mut power) = (self, self);
-        for i in 0..K {
-            (fraction.0[i], power.0[i]) = self.0[i].exp2_parts();
-        }
-        (fraction, power)
+        let [a, b, c, d] = on_each!(|I| self.0[I].exp2_parts());
+        (Self([a.0, b.0, c.0, d.0]), Self([a.1, b.1, c.1, d.1]))
     }
 }
 
@@ -180,15 +149,11 @@ impl Wide for f64 {
     }
 }
 
-impl<V: Wide, const K: usize> Wide for Lanes<V, K> {
-    const WIDTH: usize = K * V::WIDTH;
+impl<V: Wide> Wide for Lanes<V> {
+    const WIDTH: usize = 4 * V::WIDTH;
     #[inline(always)]
     fn gather(values: &[f64]) -> Self {
-        let mut out = Self::constant(0.0);
-        for k in 0..K {
-            out.0[k] = V::gather(&values[k * V::WIDTH..(k + 1) * V::WIDTH]);
-        }
-        out
+        Self(on_each!(|I| V::gather(&values[I * V::WIDTH..(I + 1) * V::WIDTH])))
     }
     fn extract(self, i: usize) -> f64 {
         self.0[i / V::WIDTH].extract(i % V::WIDTH)

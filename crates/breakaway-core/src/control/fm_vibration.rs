@@ -106,7 +106,7 @@ impl<R: Real> FmVibration<R> {
 
 /// sin(π u) for 0 ≤ u ≤ 1, as the cosine's series in π (u − ½); error below 1e-14.
 #[inline(always)]
-fn half_sine<R: Real>(u: R) -> R {
+pub(super) fn half_sine<R: Real>(u: R) -> R {
     const COSINE: [f64; 10] = [
         1.0,
         -1.0 / 2.0,
@@ -151,6 +151,7 @@ mod tests {
             reference_rate_m_per_s: 0.0,
             position_m: 0.0,
             velocity_m_per_s: 0.0,
+            force_n: 0.0,
             period_s: 1e-5,
             range: ForceRange { min_n: 0.0, max_n: 1e3 },
         }

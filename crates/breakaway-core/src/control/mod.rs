@@ -5,17 +5,28 @@
 
 mod cascade;
 mod fm_vibration;
+mod force_ramp;
 mod pid;
+mod steady_feed;
+mod timed_impacts;
 mod two_step;
+mod vibrated_feed;
+mod watch;
 
 pub use cascade::{Cascade, CascadeState};
 pub use fm_vibration::{FmVibration, FmVibrationState, PulseShape};
+pub use force_ramp::ForceRamp;
 pub use pid::{AntiWindup, DerivativeOf, Gains, Pid, PidState, VelocityFrom};
+pub use steady_feed::SteadyFeed;
+pub use timed_impacts::{ImpactNumbers, TimedImpacts, TimedImpactsState};
 pub use two_step::TwoStep;
+pub use vibrated_feed::{StackPulses, VibratedFeed, VibratedFeedState};
+pub use watch::{Watch, WatchState};
 
-use crate::actuator::ForceRange;
+use crate::actuator::{Command, ForceRange};
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::reference::Setpoint;
 
 /// What a controller knows at a sample.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +39,8 @@ pub struct Measurement<R> {
     pub position_m: R,
     /// v in m/s; used only by controllers that are told to trust it.
     pub velocity_m_per_s: R,
+    /// F in N, the force on the part as measured.
+    pub force_n: R,
     /// T_s in s, the control period.
     pub period_s: R,
     /// What the actuator can deliver.
@@ -43,8 +56,8 @@ impl<R: Real> Measurement<R> {
 }
 
 parameters! {
-    /// What moves in any controller. A controller leaves alone what it does not use.
-    pub struct ControllerState {
+    /// What moves in the paper's controllers. A controller leaves alone what it does not use.
+    pub struct VibrationState {
         /// The integral term of the PID, N.
         pub integral_n,
         /// The filtered derivative of the PID, m/s.
@@ -57,7 +70,20 @@ parameters! {
         pub since_pulse_s,
         /// 1 once the two-step supervisor vibrates, else 0.
         pub vibrating,
+        /// The force of the ramp, N.
+        pub ramp_n,
     }
+}
+
+/// What moves in any controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControllerState<R> {
+    /// PID, pulses, ramp.
+    pub vibration: VibrationState<R>,
+    /// Timed impacts.
+    pub impacts: TimedImpactsState<R>,
+    /// Feeds.
+    pub feed: VibratedFeedState<R>,
 }
 
 impl<R: Real> ControllerState<R> {
@@ -65,15 +91,31 @@ impl<R: Real> ControllerState<R> {
     pub fn at_rest(position_m: R) -> Self {
         let zero = R::zero();
         Self {
-            integral_n: zero,
-            derivative_m_per_s: zero,
-            previous_position_m: position_m,
-            phase_cycles: zero,
-            since_pulse_s: zero,
-            vibrating: zero,
+            vibration: VibrationState {
+                integral_n: zero,
+                derivative_m_per_s: zero,
+                previous_position_m: position_m,
+                phase_cycles: zero,
+                since_pulse_s: zero,
+                vibrating: zero,
+                ramp_n: zero,
+            },
+            impacts: TimedImpactsState::at_rest(),
+            feed: VibratedFeedState::at_rest(),
         }
     }
 
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ControllerState<S> {
+        ControllerState {
+            vibration: self.vibration.map(f),
+            impacts: self.impacts.map(f),
+            feed: self.feed.map(f),
+        }
+    }
+}
+
+impl<R: Real> VibrationState<R> {
     #[inline(always)]
     pub(crate) fn pid(&self) -> PidState<R> {
         PidState {
@@ -89,18 +131,16 @@ impl<R: Real> ControllerState<R> {
         self.derivative_m_per_s = pid.derivative_m_per_s;
         self.previous_position_m = pid.previous_position_m;
     }
-}
 
-impl<R: Real> ControllerState<R> {
     #[inline(always)]
-    fn vibration(&self) -> FmVibrationState<R> {
+    fn pulses(&self) -> FmVibrationState<R> {
         FmVibrationState { phase_cycles: self.phase_cycles, since_pulse_s: self.since_pulse_s }
     }
 
     #[inline(always)]
-    fn set_vibration(&mut self, vibration: FmVibrationState<R>) {
-        self.phase_cycles = vibration.phase_cycles;
-        self.since_pulse_s = vibration.since_pulse_s;
+    fn set_pulses(&mut self, pulses: FmVibrationState<R>) {
+        self.phase_cycles = pulses.phase_cycles;
+        self.since_pulse_s = pulses.since_pulse_s;
     }
 }
 
@@ -125,6 +165,14 @@ pub enum Controller<R> {
     FmVibration(VibratingPid<R>),
     /// A continuous force until breakaway, then vibration.
     TwoStep(TwoStep<R>),
+    /// A force that grows until the part is out.
+    ForceRamp(ForceRamp<R>),
+    /// A constant speed of the feed.
+    SteadyFeed(SteadyFeed<R>),
+    /// Impacts that time themselves.
+    TimedImpacts(TimedImpacts<R>),
+    /// A constant speed of the feed, and pulses of a stack.
+    VibratedFeed(VibratedFeed<R>),
 }
 
 impl<R: Real> Controller<R> {
@@ -137,29 +185,46 @@ impl<R: Real> Controller<R> {
                 vibration: c.vibration.map(f),
             }),
             Self::TwoStep(c) => Controller::TwoStep(c.map(f)),
+            Self::ForceRamp(c) => Controller::ForceRamp(c.map(f)),
+            Self::SteadyFeed(c) => Controller::SteadyFeed(c.map(f)),
+            Self::TimedImpacts(c) => Controller::TimedImpacts(c.map(f)),
+            Self::VibratedFeed(c) => Controller::VibratedFeed(c.map(f)),
         }
     }
 
-    /// The commanded force in N at a sample.
+    /// The command at a sample.
     #[inline(always)]
-    pub fn step(&self, state: &mut ControllerState<R>, measured: &Measurement<R>) -> R {
+    pub fn step(&self, state: &mut ControllerState<R>, measured: &Measurement<R>) -> Command<R> {
         match self {
             Self::Pid(pid) => {
-                let mut pid_state = state.pid();
+                let mut pid_state = state.vibration.pid();
                 let force = pid.step(&mut pid_state, measured);
-                state.set_pid(pid_state);
-                force
+                state.vibration.set_pid(pid_state);
+                Command::force(force)
             }
             Self::FmVibration(c) => {
-                let mut pid_state = state.pid();
+                let mut pid_state = state.vibration.pid();
                 let amplitude = c.pid.step(&mut pid_state, measured);
-                state.set_pid(pid_state);
-                let mut vibration = state.vibration();
-                let force = c.vibration.step(&mut vibration, amplitude, measured);
-                state.set_vibration(vibration);
-                force
+                state.vibration.set_pid(pid_state);
+                let mut pulses = state.vibration.pulses();
+                let force = c.vibration.step(&mut pulses, amplitude, measured);
+                state.vibration.set_pulses(pulses);
+                Command::force(force)
             }
-            Self::TwoStep(c) => c.step(state, measured),
+            Self::TwoStep(c) => Command::force(c.step(&mut state.vibration, measured)),
+            Self::ForceRamp(c) => c.step(&mut state.vibration.ramp_n, measured),
+            Self::SteadyFeed(c) => c.step(&mut state.feed.elapsed_s, measured.period_s),
+            Self::TimedImpacts(c) => c.step(&mut state.impacts, measured),
+            Self::VibratedFeed(c) => c.step(&mut state.feed, measured),
+        }
+    }
+    /// The speed in m/s that the part is meant to have: what is faster is a jump.
+    #[inline(always)]
+    pub fn commanded_speed(&self, setpoint: &Setpoint<R>, command: &Command<R>) -> R {
+        match self {
+            Self::Pid(_) | Self::FmVibration(_) | Self::TwoStep(_) => setpoint.rate_m_per_s,
+            Self::SteadyFeed(_) | Self::VibratedFeed(_) => command.feed_m_per_s,
+            Self::ForceRamp(_) | Self::TimedImpacts(_) => R::zero(),
         }
     }
 }

@@ -85,6 +85,18 @@ pub struct PidState<R> {
     pub previous_position_m: R,
 }
 
+impl<R: Real> PidState<R> {
+    /// Before the first sample, with the part at `position_m`.
+    pub fn at_rest(position_m: R) -> Self {
+        let zero = R::zero();
+        Self {
+            integral_n: zero,
+            derivative_m_per_s: zero,
+            previous_position_m: position_m,
+        }
+    }
+}
+
 /// The filtered derivative in parts, d = kept + share · raw, so that a gain can be multiplied in
 /// before the newest velocity is known. Nothing is kept without a filter.
 #[derive(Clone, Copy, Debug)]
@@ -241,6 +253,7 @@ mod tests {
             reference_rate_m_per_s: 0.2,
             position_m,
             velocity_m_per_s: 0.05,
+            force_n: 0.0,
             period_s: 1e-3,
             range: ForceRange { min_n: 0.0, max_n: 100.0 },
         }

@@ -1,6 +1,6 @@
 //! The paper's control in two steps.
 
-use super::{ControllerState, FmVibration, FmVibrationState, Gains, Measurement, Pid};
+use super::{FmVibration, FmVibrationState, Gains, Measurement, Pid, VibrationState};
 use crate::real::Real;
 
 /// A PID until the joint breaks loose, then vibration with gains of its own.
@@ -41,7 +41,7 @@ impl<R: Real> TwoStep<R> {
     }
 
     #[inline(always)]
-    pub(super) fn step(&self, state: &mut ControllerState<R>, measured: &Measurement<R>) -> R {
+    pub(super) fn step(&self, state: &mut VibrationState<R>, measured: &Measurement<R>) -> R {
         let mut pid = state.pid();
         let filtered = self.pid.sense(&mut pid, measured);
 
@@ -57,11 +57,11 @@ impl<R: Real> TwoStep<R> {
         let gains = self.gains(vibrating);
         let force = self.pid.output(&gains, &filtered, &mut pid, measured);
         state.set_pid(pid);
-        let waiting = state.vibration();
+        let waiting = state.pulses();
         let mut moved = waiting;
         let pulsed = self.vibration.step(&mut moved, force, measured);
         let kept = |moved: R, waiting: R| R::select(vibrating, moved, waiting);
-        state.set_vibration(FmVibrationState {
+        state.set_pulses(FmVibrationState {
             phase_cycles: kept(moved.phase_cycles, waiting.phase_cycles),
             since_pulse_s: kept(moved.since_pulse_s, waiting.since_pulse_s),
         });

@@ -1,4 +1,5 @@
-use super::{Bristle, JointState, Law};
+use super::onset::slip_onset;
+use super::{At, Bristle, Frozen, JointState, Law};
 use crate::real::Real;
 use core::f64::consts::LOG2_E;
 
@@ -82,16 +83,6 @@ impl<R: Real> DirectionalLugre<R> {
         R::select(v.lt(R::zero()), negative, positive)
     }
 
-    /// α for a deflection `z` at a level `g`.
-    #[inline(always)]
-    fn onset(&self, share: R, z: R, v: R, g: R) -> R {
-        let (zero, one) = (R::zero(), R::one());
-        let used = z.abs() * self.stiffness_n_per_m / g;
-        let s = ((used - share) / (one - share)).clamp(zero, one);
-        let step = s * s * (R::constant(-2.0)).mul_add(s, R::constant(3.0));
-        R::select(zero.lt(z * v), step, zero)
-    }
-
     /// The deflection in m at which a rig starts whose friction force is `friction_n` at position
     /// `x` and velocity `v`: that of the elastic force, at most at the level of its direction.
     #[inline(always)]
@@ -106,19 +97,16 @@ impl<R: Real> DirectionalLugre<R> {
     fn viscous(&self, v: R) -> R {
         self.of_direction(v, self.viscous_positive_n_s_per_m, self.viscous_negative_n_s_per_m)
     }
-}
 
-impl<R: Real> Law<R> for DirectionalLugre<R> {
+    /// The bristle with velocity and position frozen, its level multiplied by `level_factor`.
     #[inline(always)]
-    fn settle(&self, state: JointState<R>, _x: R, _v: R, _level_factor: R) -> JointState<R> {
-        state
-    }
-
-    #[inline(always)]
-    fn freeze(&self, state: &JointState<R>, x: R, v: R, level_factor: R) -> Bristle<R> {
+    pub fn freeze(&self, state: &JointState<R>, x: R, v: R, level_factor: R) -> Bristle<R> {
         let g = self.level(x, v) * level_factor;
         let relaxation = match self.elastic_share {
-            Some(share) => self.onset(share, state.bristle_m, v, g) * self.stiffness_n_per_m,
+            Some(share) => {
+                slip_onset(share, state.bristle_m, v, self.stiffness_n_per_m, g)
+                    * self.stiffness_n_per_m
+            }
             None => self.stiffness_n_per_m,
         };
         Bristle {
@@ -130,6 +118,19 @@ impl<R: Real> Law<R> for DirectionalLugre<R> {
             damping_n_s_per_m: self.damping_n_s_per_m,
             viscous_n_s_per_m: Some(self.viscous(v)),
         }
+    }
+}
+
+impl<R: Real> Law<R> for DirectionalLugre<R> {
+    #[inline(always)]
+    fn settle(&self, state: JointState<R>, _x: R, _v: R, _level_factor: R) -> JointState<R> {
+        state
+    }
+
+    #[inline(always)]
+    fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
+        let (x, v) = (at.position_m, at.velocity_m_per_s);
+        then.bristle(&self.freeze(state, x, v, at.level_factor))
     }
 
     #[inline(always)]

@@ -2,22 +2,28 @@
 
 use core::f64::consts::LOG2_E;
 
-use super::{Bristle, engaged_level};
+use super::{At, Bristle, engaged_level};
 use crate::real::Real;
 
 /// Modified LuGre friction, equations (1) to (8).
 ///
 /// ```text
 /// ż    = v − k_e |v| / g(v, x) · z                              (2)
-/// R    = k_e z + c ż + σ₂ v                                     (1), (7) with σ₂ = 0
+/// R    = k_e z + c(v) ż + σ₂ v                                  (1), (7) with σ₂ = 0
 /// g    = F_c(x) + (F_s(x) − F_c(x)) exp(−(v / v_s)²)            (3)
 /// F(x) = F_0 + (F_end − F_0) x / l_f                            (5), (6)
+/// c(v) = c,  or  c exp(−(v / v_d)²)
 /// ```
 ///
 /// Equation (2) is printed without `k_e`; the factor is that of Canudas de Wit, Olsson,
-/// Åström and Lischinsky, IEEE TAC 40(3), 1995. Valid for positive levels, stiffness, Stribeck
-/// velocity and length. Two faults of the law flatter vibration: it drifts below breakaway
+/// Åström and Lischinsky, IEEE TAC 40(3), 1995. Valid for positive levels, stiffness, velocities
+/// and length. Two faults of the law flatter vibration: it drifts below breakaway
 /// under vibration, and its breakaway force depends on the loading rate.
+///
+/// With a constant c the law is no passive friction: at speeds where c |v| exceeds 4 g a bristle
+/// stretched beyond its level can push the part. With a damping velocity (Olsson, thesis, Lund
+/// 1996) it is, if c(v)² |v| ≤ 4 g(v, x) [c(v) + σ₂] at all v, for which c v_d ≤ 4 √(2e) F is enough,
+/// F the smallest level. Not checked. Derivation: `docs/derivations/friction_laws.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Lugre<R> {
@@ -37,63 +43,119 @@ pub struct Lugre<R> {
     pub engagement_length_m: R,
     /// F_end in N, friction left at x = l_f.
     pub residual_n: R,
+    /// v_d in m/s, if the damping of the bristles falls with speed.
+    pub damping_velocity_m_per_s: Option<R>,
+    /// What the levels are multiplied by while v < 0, if they differ.
+    pub backward_ratio: Option<R>,
 }
 
 impl<R: Real> Lugre<R> {
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Lugre<S> {
+        let v_s = self.stribeck_velocity_m_per_s;
         Lugre {
             stiction_n: f("stiction_n", self.stiction_n),
             coulomb_n: f("coulomb_n", self.coulomb_n),
             stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
             damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
             viscous_n_s_per_m: self.viscous_n_s_per_m.map(|sigma| f("viscous_n_s_per_m", sigma)),
-            stribeck_velocity_m_per_s: f(
-                "stribeck_velocity_m_per_s",
-                self.stribeck_velocity_m_per_s,
-            ),
+            stribeck_velocity_m_per_s: f("stribeck_velocity_m_per_s", v_s),
             engagement_length_m: f("engagement_length_m", self.engagement_length_m),
             residual_n: f("residual_n", self.residual_n),
+            damping_velocity_m_per_s: self
+                .damping_velocity_m_per_s
+                .map(|v_d| f("damping_velocity_m_per_s", v_d)),
+            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
         }
     }
 
-    /// F_s(x) in N: equation (5).
+    /// Whether none of the options is used.
+    pub fn is_plain(&self) -> bool {
+        self.viscous_n_s_per_m.is_none()
+            && self.damping_velocity_m_per_s.is_none()
+            && self.backward_ratio.is_none()
+    }
+
+    /// The same levels, bristle and guide without options, written so that compilers see it.
+    #[inline(always)]
+    pub fn plain(&self) -> Self {
+        Self {
+            viscous_n_s_per_m: None,
+            damping_velocity_m_per_s: None,
+            backward_ratio: None,
+            ..*self
+        }
+    }
+
+    /// F_s(x) in N against forward motion: equation (5).
     #[inline(always)]
     pub fn stiction(&self, x: R) -> R {
         engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
-    /// F_c(x) in N: equation (6).
+    /// F_c(x) in N against forward motion: equation (6).
     #[inline(always)]
     pub fn coulomb(&self, x: R) -> R {
         engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
     /// g(v, x) in N, multiplied by `factor`: equation (3).
-    ///
-    /// exp(−(v/v_s)²) is computed as 2^(v² s) with s = −log₂ e / v_s², and both levels as straight
-    /// lines whose coefficients do not change during a run.
     #[inline(always)]
     pub fn friction_level(&self, x: R, v: R, factor: R) -> R {
+        let factor = match self.backward_ratio {
+            Some(ratio) => factor * R::select(v.lt(R::zero()), ratio, R::one()),
+            None => factor,
+        };
         let (end, length) = (self.residual_n, self.engagement_length_m);
-        let coulomb = engaged_level(self.coulomb_n, end, length, factor, x);
-        let seated_peak = self.stiction_n - self.coulomb_n;
-        let peak = engaged_level(seated_peak, R::zero(), length, factor, x);
-        let v_s = self.stribeck_velocity_m_per_s;
-        let (fraction, power) = (v * v * (-R::constant(LOG2_E) / (v_s * v_s))).exp2_parts();
-        fraction.mul_add(peak * power, coulomb)
+        let levels = [self.stiction_n, self.coulomb_n];
+        stribeck_level(levels, end, length, self.stribeck_velocity_m_per_s, x, v, factor)
+    }
+
+    /// c(v) in N s/m.
+    #[inline(always)]
+    pub fn damping(&self, v: R) -> R {
+        match self.damping_velocity_m_per_s {
+            Some(v_d) => self.damping_n_s_per_m * bell(v, v_d),
+            None => self.damping_n_s_per_m,
+        }
     }
 
     #[inline(always)]
-    pub(super) fn freeze(&self, x: R, v: R, level_factor: R) -> Bristle<R> {
+    pub(super) fn freeze(&self, at: &At<R>) -> Bristle<R> {
+        let v = at.velocity_m_per_s;
         Bristle {
             stretch: R::one(),
             speed_m_per_s: v.abs(),
             relaxation_n_per_m: self.stiffness_n_per_m,
-            friction_level_n: self.friction_level(x, v, level_factor),
+            friction_level_n: self.friction_level(at.position_m, v, at.level_factor),
             stiffness_n_per_m: self.stiffness_n_per_m,
-            damping_n_s_per_m: self.damping_n_s_per_m,
+            damping_n_s_per_m: self.damping(v),
             viscous_n_s_per_m: self.viscous_n_s_per_m,
         }
     }
+}
+
+/// exp(−(v / scale)²) as 2^(v² s) with s = −log₂ e / scale², which does not change during a run.
+#[inline(always)]
+fn bell<R: Real>(v: R, scale: R) -> R {
+    (v * v * (-R::constant(LOG2_E) / (scale * scale))).exp2()
+}
+
+/// The Stribeck curve g(v, x) in N of the levels [F_s0, F_c0] and F_end, multiplied by `factor`:
+/// equation (3). Both levels are straight lines whose coefficients do not change during a run.
+#[inline(always)]
+pub(super) fn stribeck_level<R: Real>(
+    [stiction_n, coulomb_n]: [R; 2],
+    end_n: R,
+    length_m: R,
+    v_s: R,
+    x: R,
+    v: R,
+    factor: R,
+) -> R {
+    let coulomb = engaged_level(coulomb_n, end_n, length_m, factor, x);
+    let seated_peak = stiction_n - coulomb_n;
+    let peak = engaged_level(seated_peak, R::zero(), length_m, factor, x);
+    let (fraction, power) = (v * v * (-R::constant(LOG2_E) / (v_s * v_s))).exp2_parts();
+    fraction.mul_add(peak * power, coulomb)
 }

@@ -1,44 +1,58 @@
 //! The two-region law that the paper designs its controller with.
 
 use super::{Bristle, JointState, engaged_level};
-use crate::parameters::parameters;
 use crate::real::Real;
 
-parameters! {
-    /// Bristle spring and damper while stuck, Coulomb force while sliding: equation (9).
-    ///
-    /// ```text
-    /// stuck:    R = k_e z + c ż,  ż = v        until |k_e z| > F_s(x)
-    /// sliding:  R = F_c(x) sgn z               until v turns against the slip
-    /// ```
-    ///
-    /// The paper switches on the applied force and gives no way back. Here the joint switches on
-    /// what it can feel, its own elastic force, and catches again when the slip stops. A switch
-    /// takes effect at the start of a step, so the time of an event is exact to one step.
-    pub struct TwoRegion {
-        /// F_s0 in N, stiction force at the seat.
-        pub stiction_n,
-        /// F_c0 in N, Coulomb force at the seat.
-        pub coulomb_n,
-        /// k_e in N/m.
-        pub stiffness_n_per_m,
-        /// c in N s/m.
-        pub damping_n_s_per_m,
-        /// l_f in m.
-        pub engagement_length_m,
-        /// F_end in N, friction left at x = l_f.
-        pub residual_n,
-    }
+/// Bristle spring and damper while stuck, Coulomb force while sliding: equation (9).
+///
+/// ```text
+/// stuck:    R = k_e z + c ż,  ż = v        until |k_e z| > F_s(x)
+/// sliding:  R = F_c(x) sgn z               until v turns against the slip
+/// ```
+///
+/// The paper switches on the applied force and gives no way back. Here the joint switches on
+/// what it can feel, its own elastic force, and catches again when the slip stops. A switch
+/// takes effect at the start of a step, so the time of an event is exact to one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+pub struct TwoRegion<R> {
+    /// F_s0 in N, stiction force at the seat.
+    pub stiction_n: R,
+    /// F_c0 in N, Coulomb force at the seat.
+    pub coulomb_n: R,
+    /// k_e in N/m.
+    pub stiffness_n_per_m: R,
+    /// c in N s/m.
+    pub damping_n_s_per_m: R,
+    /// l_f in m.
+    pub engagement_length_m: R,
+    /// F_end in N, friction left at x = l_f.
+    pub residual_n: R,
+    /// What the levels are multiplied by while z < 0, if they differ.
+    pub backward_ratio: Option<R>,
 }
 
 impl<R: Real> TwoRegion<R> {
-    /// F_s(x) in N: equation (5).
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TwoRegion<S> {
+        TwoRegion {
+            stiction_n: f("stiction_n", self.stiction_n),
+            coulomb_n: f("coulomb_n", self.coulomb_n),
+            stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
+            damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
+            engagement_length_m: f("engagement_length_m", self.engagement_length_m),
+            residual_n: f("residual_n", self.residual_n),
+            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
+        }
+    }
+
+    /// F_s(x) in N against forward motion: equation (5).
     #[inline(always)]
     pub fn stiction(&self, x: R) -> R {
         engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
-    /// F_c(x) in N: equation (6).
+    /// F_c(x) in N against forward motion: equation (6).
     #[inline(always)]
     pub fn coulomb(&self, x: R) -> R {
         engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, R::one(), x)
@@ -54,6 +68,10 @@ impl<R: Real> TwoRegion<R> {
         level_factor: R,
     ) -> JointState<R> {
         let direction = state.bristle_m.sign();
+        let level_factor = match self.backward_ratio {
+            Some(ratio) => level_factor * R::select(direction.lt(R::zero()), ratio, R::one()),
+            None => level_factor,
+        };
         let elastic = (self.stiffness_n_per_m * state.bristle_m).abs();
         let slips_on = state.sliding.is_set() & R::zero().lt(v * direction);
         let breaks = !state.sliding.is_set() & (self.stiction(x) * level_factor).lt(elastic);

@@ -3,7 +3,7 @@
 
 use breakaway_core::disturbance::Factors;
 use breakaway_core::joint::Joint;
-use breakaway_core::plant::{Integrator, Plant, PlantState};
+use breakaway_core::plant::{Integrator, Moved, Plant, PlantState, Push};
 
 /// No disturbance.
 pub(crate) const UNDISTURBED: Factors<f64> = Factors { joint_force: 1.0, friction_level: 1.0 };
@@ -29,7 +29,14 @@ impl Rig {
 
     /// Applies a force for `h` seconds under a disturbance; gives the joint force.
     pub(crate) fn push_disturbed(&mut self, force_n: f64, h: f64, factors: Factors<f64>) -> f64 {
-        let plant = Plant { joint: &self.joint, mass_kg: 1.0, force_n, factors };
+        let push = Push::rigid(force_n);
+        let plant = Plant { joint: &self.joint, mass_kg: 1.0, push, factors };
+        plant.step(self.integrator, &mut self.state, h).joint_force_n
+    }
+
+    /// Pushes for `h` seconds.
+    pub(crate) fn moved(&mut self, push: Push<f64>, h: f64) -> Moved<f64> {
+        let plant = Plant { joint: &self.joint, mass_kg: 1.0, push, factors: UNDISTURBED };
         plant.step(self.integrator, &mut self.state, h)
     }
 
@@ -38,4 +45,13 @@ impl Rig {
         let steps = (time_s / 1e-5).round() as u32;
         (0..steps).fold(0.0, |_, _| self.push(force_n, 1e-5))
     }
+}
+
+/// Uniform on [-1, 1): SplitMix64.
+pub(crate) fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((z ^ (z >> 31)) >> 11) as f64 * 2.0_f64.powi(-52) - 1.0
 }

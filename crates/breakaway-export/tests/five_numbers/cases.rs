@@ -1,26 +1,28 @@
 //! Every kind of joint, reference, actuator, disturbance, controller and integrator, combined: a
 //! miniature of the paper's loop, whose part breaks loose, slides and leaves within 4 ms.
 
-use breakaway_batch::draws::{Stream, uniform};
-use breakaway_core::actuator::{Actuator, PushOnly};
+use breakaway_batch::draws::{Stream, noise, uniform};
+use breakaway_core::actuator::{Actuator, Contact, FeedAxis, ForceActuator, Piezo, PushOnly, Tip};
 use breakaway_core::control::{
-    AntiWindup, Controller, DerivativeOf, FmVibration, Gains, Pid, PulseShape, TwoStep,
-    VelocityFrom, VibratingPid,
+    AntiWindup, Controller, DerivativeOf, FmVibration, ForceRamp, Gains, Pid, PulseShape,
+    StackPulses, SteadyFeed, TimedImpacts, TwoStep, VelocityFrom, VibratedFeed, VibratingPid,
+    Watch,
 };
 use breakaway_core::disturbance::{Disturbance, DisturbedQuantity, DrawLaw};
 use breakaway_core::extraction::{Part, Timing};
-use breakaway_core::joint::{Joint, Lugre, TwoRegion};
+use breakaway_core::joint::{
+    CoulombStiction, ElastoPlastic, Gms, Joint, Lugre, TwoRegion, default_shares,
+};
 use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::plant::Integrator;
 use breakaway_core::reference::{Motion, Reference, Step, Trapezoid};
+use breakaway_core::sensor::{Noise, Sensor, Sensors};
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Real};
 
 /// Samples that each case is run for.
 pub(crate) const SAMPLES: u32 = 400;
 /// Samples that a draw of the disturbance is held for.
 const HOLD: u32 = 16;
-/// Numbers in a state.
-pub(crate) const STATE_NUMBERS: usize = 13;
 /// l_f in m.
 const LENGTH_M: f64 = 8e-4;
 const LUGRE: Lugre<f64> = Lugre {
@@ -32,6 +34,8 @@ const LUGRE: Lugre<f64> = Lugre {
     stribeck_velocity_m_per_s: 0.09,
     engagement_length_m: LENGTH_M,
     residual_n: 150.0,
+    damping_velocity_m_per_s: None,
+    backward_ratio: None,
 };
 const TWO_REGION: TwoRegion<f64> = TwoRegion {
     stiction_n: 450.0,
@@ -40,6 +44,7 @@ const TWO_REGION: TwoRegion<f64> = TwoRegion {
     damping_n_s_per_m: 1500.0,
     engagement_length_m: LENGTH_M,
     residual_n: 150.0,
+    backward_ratio: None,
 };
 const STEP: Step<f64> = Step { distance_m: 1e-3, start_s: 3e-4 };
 const MOTION: Motion<f64> = Motion { distance_m: 1e-3, start_s: 3e-4, duration_s: 2e-3 };
@@ -119,6 +124,52 @@ fn timings(one_sample_delay: bool) -> [Timing<f64>; 2] {
     [timing, Timing { integrator, steps_per_period: 2, ..timing }]
 }
 
+/// LuGre with every option, and the laws that are not in the full product.
+fn more_joints() -> [Joint<f64>; MORE_JOINTS] {
+    let friction =
+        Lugre { damping_velocity_m_per_s: Some(0.4), backward_ratio: Some(0.7), ..LUGRE };
+    let (stiffness_shares, level_shares) = default_shares(5);
+    let gms =
+        Gms { friction, attraction_n_per_s: 2e6, elements: 5, stiffness_shares, level_shares };
+    let (stiffness_shares, level_shares) = default_shares(10);
+    let plain = Gms { friction: LUGRE, elements: 10, stiffness_shares, level_shares, ..gms };
+    [
+        Joint::Lugre(friction),
+        Joint::TwoRegion(TwoRegion { backward_ratio: Some(0.7), ..TWO_REGION }),
+        Joint::ElastoPlastic(ElastoPlastic { friction, elastic_share: 0.6 }),
+        Joint::Gms(gms),
+        Joint::Gms(plain),
+        Joint::CoulombStiction(CoulombStiction {
+            stiction_n: 450.0,
+            coulomb_n: 360.0,
+            viscous_n_s_per_m: Some(40.0),
+            stribeck_velocity_m_per_s: 0.09,
+            engagement_length_m: LENGTH_M,
+            residual_n: 150.0,
+            backward_ratio: Some(0.7),
+        }),
+    ]
+}
+
+/// [`more_joints`] under a few of the controllers of other cases.
+fn more_cases(cases: &[Case]) -> Vec<Case> {
+    let midpoint = |case: &&Case| {
+        let timing = case.extraction.timing;
+        timing.integrator == Integrator::LinearlyImplicitMidpoint
+    };
+    let some: Vec<_> = cases.iter().filter(midpoint).step_by(71).take(MORE_PER_JOINT).collect();
+    let under = |joint| some.iter().map(move |case| Extraction { joint, ..case.extraction });
+    let extractions = more_joints().into_iter().flat_map(under);
+    extractions.map(|extraction| Case { name: format!("{extraction:?}"), extraction }).collect()
+}
+
+/// How many [`more_joints`] there are.
+const MORE_JOINTS: usize = 6;
+/// Cases of each of them.
+const MORE_PER_JOINT: usize = 5;
+/// How many [`more_cases`] there are.
+pub(crate) const MORE_CASES: u32 = 30;
+
 /// All cases.
 pub(crate) fn all() -> Vec<Case> {
     let joints = [Joint::Lugre(LUGRE), Joint::TwoRegion(TWO_REGION)];
@@ -150,6 +201,8 @@ pub(crate) fn all() -> Vec<Case> {
                                 reference,
                                 disturbance,
                                 actuator,
+                                sensors: None,
+                                watch: None,
                                 controller,
                                 timing,
                             };
@@ -160,7 +213,149 @@ pub(crate) fn all() -> Vec<Case> {
             }
         }
     }
+    let more = more_cases(&cases);
+    let pushed = pushed_cases(&cases);
+    cases.extend(more);
+    cases.extend(pushed);
     cases
+}
+
+const STACK: Piezo<f64> = Piezo {
+    stroke_m: 38e-6,
+    stiffness_n_per_m: 1e8,
+    tip_mass_kg: 0.05,
+    damping_n_s_per_m: 400.0,
+    hysteresis_share: 0.4,
+    preload_n: 800.0,
+    capacitance_f: 13e-6,
+    loss_tangent: 0.02,
+    voltage_max_v: 120.0,
+    current_max_a: 20.0,
+    amplifier_bandwidth_hz: 5000.0,
+};
+const AXIS: FeedAxis<f64> = FeedAxis {
+    speed_max_m_per_s: 0.4,
+    acceleration_max_m_per_s2: 800.0,
+    stiffness_n_per_m: 3e7,
+    damping_n_s_per_m: 8e3,
+    tool_mass_kg: 1.0,
+    tip: Tip::Rigid,
+    contact: Contact { stiffness_n_per_m: 5e7, damping_n_s_per_m: 3e3, gap_m: 1e-6 },
+};
+const FORCE: Actuator<f64> = Actuator::Force(ForceActuator {
+    force_max_n: 900.0,
+    bandwidth_hz: 4000.0,
+    force_rate_max_n_per_s: 3e6,
+});
+/// Bandwidth, steps and delay of every kind; noise small enough for a part to be watched by.
+const SENSORS: Sensors<f64> = Sensors {
+    position: Sensor {
+        noise_rms: 1e-8,
+        quantum: Some(1e-8),
+        bandwidth_hz: Some(2e4),
+        delay_samples: 1,
+    },
+    force: Sensor { noise_rms: 1.0, quantum: None, bandwidth_hz: None, delay_samples: 0 },
+};
+/// Trusts what these parts do.
+const WATCH: Watch<f64> = Watch { jump_max_m: 1e-4, frozen_max_s: f64::INFINITY };
+/// Takes the faster ones of these parts for a jump.
+const NERVOUS: Watch<f64> = Watch { jump_max_m: 6e-6, frozen_max_s: 1e-3 };
+
+/// Impacts as fast as these parts.
+fn impacts() -> Controller<f64> {
+    Controller::TimedImpacts(TimedImpacts {
+        travel_m: LENGTH_M,
+        target_s: 4e-3,
+        force_start_n: 300.0,
+        search_time_constant_s: 5e-4,
+        rise_time_constant_s: 3e-4,
+        slowing_m_per_s: 0.2,
+        holding_m_per_s: 0.6,
+        step_min_m: 2e-4,
+        step_max_m: 9e-4,
+        travel_min_m: 1.2e-4,
+        restart_ratio: 0.6,
+        probe_ratio: 0.06,
+        breakaway_share: 0.3,
+        coast_min_s: 1e-4,
+        settled_m: 1e-5,
+        lead_start_s: 1e-4,
+        lead_min_s: 1e-5,
+        lead_max_s: 1e-3,
+        noise_rms_m: 1e-8,
+        noise_margin: 2.0,
+        free_margin_m: 3e-6,
+        actuator_lag_s: 4e-5,
+    })
+}
+
+/// What can push, with what may push it, what it sees and who watches.
+type Pushed = (Actuator<f64>, Controller<f64>, Option<Sensors<f64>>, Option<Watch<f64>>);
+
+fn pushed() -> [Pushed; PUSHED] {
+    let ramp = Controller::ForceRamp(ForceRamp { rate_n_per_s: 3e5, travel_m: LENGTH_M });
+    let settings = SteadyFeed { speed_m_per_s: 0.35, approach_m_per_s: 0.02, approach_s: 2e-4 };
+    let feed = Controller::SteadyFeed(settings);
+    let pulses = StackPulses {
+        frequency_hz: 2500.0,
+        pulse_width_s: 2e-4,
+        amplitude_ratio: 0.7,
+        stack_force_n: 2000.0,
+        force_filter_s: 1e-4,
+    };
+    let vibrated = Controller::VibratedFeed(VibratedFeed { feed: settings, pulses });
+    let stacked = Actuator::FeedAxis(FeedAxis { tip: Tip::Piezo(STACK), ..AXIS });
+    let shared = |controllers: &[Controller<f64>]| controllers[0];
+    let pid = shared(&controllers()[3..]);
+    let pulsed = shared(&controllers()[12..]);
+    let (seen, watch) = (Some(SENSORS), Some(WATCH));
+    let push_only = Actuator::PushOnly(PushOnly { force_max_n: 800.0 });
+    [
+        (FORCE, pid, None, None),
+        (FORCE, pulsed, seen, None),
+        (FORCE, ramp, seen, watch),
+        (FORCE, impacts(), None, None),
+        (push_only, impacts(), seen, watch),
+        (Actuator::Ideal, ramp, None, watch),
+        (Actuator::Ideal, pid, seen, watch),
+        (Actuator::FeedAxis(AXIS), feed, None, None),
+        (Actuator::FeedAxis(AXIS), feed, seen, watch),
+        (stacked, feed, None, None),
+        (stacked, vibrated, None, None),
+        (stacked, vibrated, seen, watch),
+    ]
+}
+
+/// [`pushed`] on one joint of each law, with one step in a period and three.
+fn pushed_cases(cases: &[Case]) -> Vec<Case> {
+    let base = cases[0].extraction;
+    let [lugre, two_region, elasto_plastic, _, gms, rigid] = more_joints();
+    let mut all = Vec::new();
+    for (i, (actuator, controller, sensors, watch)) in pushed().into_iter().enumerate() {
+        for (j, joint) in [lugre, two_region, elasto_plastic, gms, rigid].into_iter().enumerate() {
+            let steps_per_period = [1, 3][(i + j) % 2];
+            let timing = Timing { steps_per_period, one_sample_delay: i % 2 == 0, ..base.timing };
+            let case = Extraction { joint, actuator, controller, sensors, watch, timing, ..base };
+            all.push(Case { name: format!("{case:?}"), extraction: case });
+        }
+    }
+    all
+}
+
+/// How many [`pushed`] there are, each on five joints.
+const PUSHED: usize = 12;
+/// Cases of all of them.
+pub(crate) const PUSHED_CASES: u32 = 60;
+
+/// Cases in which a watch stops some parts; these need not leave their joint.
+pub(crate) fn nervous() -> Vec<Case> {
+    let watched = pushed_cases(&all()).into_iter().filter(|case| case.extraction.watch.is_some());
+    let nervous = |case: Case| {
+        let extraction = Extraction { watch: Some(NERVOUS), ..case.extraction };
+        Case { name: format!("{extraction:?}"), extraction }
+    };
+    watched.map(nervous).collect()
 }
 
 /// A case without switches: LuGre friction under a PID, pulled slowly at first.
@@ -182,6 +377,7 @@ pub(crate) fn limits() -> Limits<f64> {
         diverged_error_m: 5e-3,
         diverged_force_n: 9000.0,
         release_position_m: LENGTH_M,
+        after_release_s: f64::INFINITY,
         breakaway_travel_m: 1.5e-4,
         peak_force_max_n: f64::INFINITY,
         jump_max_m: f64::INFINITY,
@@ -198,9 +394,21 @@ pub(crate) fn varied(extraction: &Extraction<f64>, lane: u64) -> Extraction<f64>
     })
 }
 
-/// The held draw of a lane at a sample; never zero.
-pub(crate) fn draw(lane: u64, sample: u32) -> f64 {
-    uniform(5, lane, Stream::Disturbance, sample / HOLD)
+/// The held draw of a lane at a sample, never zero, and the noise of its sensors.
+pub(crate) fn draw(lane: u64, sample: u32) -> Draws<f64> {
+    let [[position], [force]] = noise(5, &[lane], u64::from(sample));
+    Draws {
+        disturbance: uniform(5, lane, Stream::Disturbance, sample / HOLD),
+        noise: Noise { position, force },
+    }
+}
+
+/// Draws as another number.
+pub(crate) fn cast<R>(draws: &Draws<f64>, number: impl Fn(f64) -> R) -> Draws<R> {
+    Draws {
+        disturbance: number(draws.disturbance),
+        noise: Noise { position: number(draws.noise.position), force: number(draws.noise.force) },
+    }
 }
 
 /// A run under way, in any number.
@@ -227,8 +435,8 @@ impl<R: Real> Run<R> {
     }
 
     /// The step that all five numbers take.
-    pub(crate) fn step(&mut self, disturbance: R) {
-        let sample = self.extraction.step(&mut self.state, Draws { disturbance });
+    pub(crate) fn step(&mut self, draws: Draws<R>) {
+        let sample = self.extraction.step(&mut self.state, draws);
         self.metrics.update(Groups::ALL, &self.limits, &sample);
     }
 

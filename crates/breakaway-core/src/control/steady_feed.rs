@@ -1,0 +1,42 @@
+//! The stiff way: move, whatever it takes.
+
+use crate::actuator::Command;
+use crate::parameters::parameters;
+use crate::real::Real;
+
+parameters! {
+    /// A slow approach for a set time, then a constant speed of the feed, without any sensing.
+    ///
+    /// ```text
+    /// w = w_a  for t < t_a,  then w_0
+    /// ```
+    ///
+    /// Behind a stiff axis little energy is stored, so a part that breaks loose jumps by no more than
+    /// about 2 (F_s − F_c) / k. This is the baseline that vibration has to beat. A tool that closes its
+    /// gap at w meets the part with a force of about w sqrt(k m): hence the approach.
+    pub struct SteadyFeed {
+        /// w_0 in m/s.
+        pub speed_m_per_s,
+        /// w_a in m/s.
+        pub approach_m_per_s,
+        /// t_a in s.
+        pub approach_s,
+    }
+}
+
+impl<R: Real> SteadyFeed<R> {
+    /// The speed in m/s at a sample; `elapsed_s` is what moves.
+    #[inline(always)]
+    pub fn speed(&self, elapsed_s: &mut R, period_s: R) -> R {
+        let approaching = (*elapsed_s).lt(self.approach_s);
+        *elapsed_s = *elapsed_s + period_s;
+        R::select(approaching, self.approach_m_per_s, self.speed_m_per_s)
+    }
+
+    /// The command at a sample.
+    #[inline(always)]
+    pub fn step(&self, elapsed_s: &mut R, period_s: R) -> Command<R> {
+        let feed_m_per_s = self.speed(elapsed_s, period_s);
+        Command { force_n: R::zero(), feed_m_per_s, stack_share: R::zero() }
+    }
+}

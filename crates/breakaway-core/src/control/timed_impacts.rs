@@ -1,0 +1,337 @@
+//! Impacts that time themselves by what the part does.
+
+use super::Measurement;
+use crate::actuator::Command;
+use crate::parameters::parameters;
+use crate::real::Real;
+
+/// Positions that the slopes are taken over.
+const WINDOW: usize = 8;
+
+parameters! {
+    /// Impacts that end as soon as the part slips, or fruitless at a ceiling. No friction parameter is
+    /// needed.
+    ///
+    /// ```text
+    ///            (x − x₀) + κ v̂ ≥ Δ,  or F = C and v̂ < v_1
+    ///   ┌──────┐ ─────────────────────────> ┌───────┐   x ≥ l   ┌──────┐
+    ///   │ rise │                            │ coast │ ────────> │ free │
+    ///   └──────┘ <───────────────────────── └───────┘           └──────┘
+    ///               at rest: x₀, Δ, κ, C anew
+    /// rise   F ← F (1 + b T_s / τ),  b = clip(1 − (v̂ − v_1) / (v_2 − v_1), 0, 1)
+    /// coast  F = 0, at least t_c, until means over ten samples agree within d
+    /// ```
+    ///
+    /// Exponential growth makes an overshoot relative: a weak part meets as many percent too much as
+    /// a strong one. The first search rises from F_1 with τ_s until something slips. From then on an
+    /// impact rises with τ from `restart_ratio` C to the ceiling C. There it ends, unless the part is
+    /// seen to move: what is heavy for its friction is pushed on, to Δ; what slips at the peak slips
+    /// under a force that already falls, so that the slip need not be seen to be short. The ceiling is set so that
+    /// impacts make the step:
+    ///
+    /// ```text
+    /// C ← C [1 + p clip((Δ − s) / Δ, −3, 1)]        s the furthest travel of the impact
+    /// ```
+    ///
+    /// with p = `probe_ratio`. If the slip was seen before, C first moves by `breakaway_share` to the largest
+    /// force of that impact as modeled, a lag behind the command.
+    ///
+    /// v̂ is the largest slope of least squares over 3, 5 and 8 positions, each less `noise_margin` of its
+    /// deviation from noise. The lead κ adapts: a slip beyond Δ multiplies it by 1.15, one short of
+    /// Δ by 0.95. Δ is what has to be traveled in each cycle to be out at t_end, plus the recoil of
+    /// the joint, within its limits. The part counts as free once the mean of three positions is
+    /// `free_margin` beyond l.
+    pub struct TimedImpacts {
+        /// l in m: where the part is out.
+        pub travel_m,
+        /// t_end in s: when it should be out.
+        pub target_s,
+        /// F_1 in N: where the first search begins.
+        pub force_start_n,
+        /// τ_s in s.
+        pub search_time_constant_s,
+        /// τ in s.
+        pub rise_time_constant_s,
+        /// v_1 in m/s: above this v̂ the force grows slower.
+        pub slowing_m_per_s,
+        /// v_2 in m/s: above this v̂ it does not grow.
+        pub holding_m_per_s,
+        /// Smallest Δ in m.
+        pub step_min_m,
+        /// Largest Δ in m.
+        pub step_max_m,
+        /// Travel in m below which nothing counts as a slip.
+        pub travel_min_m,
+        /// Share of C at which a rise begins.
+        pub restart_ratio,
+        /// p: share by which a fruitless impact raises C.
+        pub probe_ratio,
+        /// Share by which C follows the force of a slip that was seen.
+        pub breakaway_share,
+        /// t_c in s.
+        pub coast_min_s,
+        /// d in m.
+        pub settled_m,
+        /// κ in s at the start.
+        pub lead_start_s,
+        /// Smallest κ in s.
+        pub lead_min_s,
+        /// Largest κ in s.
+        pub lead_max_s,
+        /// Deviation of the position sensor's noise, m.
+        pub noise_rms_m,
+        /// Deviations of noise that a slope must exceed.
+        pub noise_margin,
+        /// Distance beyond l at which the part is taken as free, m.
+        pub free_margin_m,
+        /// Lag of the actuator as modeled, s.
+        pub actuator_lag_s,
+    }
+}
+
+/// What moves in timed impacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedImpactsState<R> {
+    /// Numbers.
+    pub numbers: ImpactNumbers<R>,
+    /// The last positions, newest first, m.
+    pub window_m: [R; WINDOW],
+}
+
+parameters! {
+    /// The numbers that move in timed impacts.
+    pub struct ImpactNumbers {
+        /// 1 while coasting.
+        pub coasting,
+        /// 1 if this impact was cut because the part slipped.
+        pub seen_to_slip,
+        /// 1 once the part is out.
+        pub free,
+        /// F in N.
+        pub force_n,
+        /// The actuator's force as modeled, N.
+        pub modeled_n,
+        /// Largest modeled force of this impact, N.
+        pub peak_n,
+        /// C in N, 0 until the first slip.
+        pub ceiling_n,
+        /// x₀ in m.
+        pub start_m,
+        /// Largest position in the cycle, m.
+        pub furthest_m,
+        /// κ in s.
+        pub lead_s,
+        /// Δ in m.
+        pub step_m,
+        /// Mean recoil in m.
+        pub recoil_m,
+        /// Mean duration of a cycle, s.
+        pub cycle_s,
+        /// Time in this cycle, s.
+        pub in_cycle_s,
+        /// Time coasted in this cycle, s.
+        pub coasted_s,
+        /// Time since the start, s.
+        pub elapsed_s,
+        /// Samples in the present mean.
+        pub mean_count,
+        /// Their sum, m.
+        pub mean_sum_m,
+        /// The last mean, m.
+        pub mean_m,
+        /// Samples so far, up to the window's.
+        pub seen,
+    }
+}
+
+impl<R: Real> TimedImpactsState<R> {
+    /// Before the first sample.
+    pub fn at_rest() -> Self {
+        let zero = R::zero();
+        let numbers = ImpactNumbers {
+            coasting: zero,
+            seen_to_slip: zero,
+            free: zero,
+            force_n: zero,
+            modeled_n: zero,
+            peak_n: zero,
+            ceiling_n: zero,
+            start_m: zero,
+            furthest_m: zero,
+            lead_s: zero,
+            step_m: zero,
+            recoil_m: zero,
+            cycle_s: zero,
+            in_cycle_s: zero,
+            coasted_s: zero,
+            elapsed_s: zero,
+            mean_count: zero,
+            mean_sum_m: zero,
+            mean_m: zero,
+            seen: zero,
+        };
+        Self { numbers, window_m: [zero; WINDOW] }
+    }
+
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TimedImpactsState<S> {
+        TimedImpactsState {
+            numbers: self.numbers.map(f),
+            window_m: self.window_m.map(|x| f("window_m", x)),
+        }
+    }
+}
+
+/// Samples in a mean while coasting.
+const MEAN_SAMPLES: f64 = 10.0;
+/// What κ is multiplied by after a slip beyond Δ, and after one short of it.
+const LEAD_UP: f64 = 1.15;
+const LEAD_DOWN: f64 = 0.95;
+/// Most that a slip beyond Δ lowers the ceiling, over what a fruitless impact raises it.
+const MOST_DOWN: f64 = 3.0;
+/// What a cycle is taken to last before there was one, s.
+const FIRST_CYCLE_S: f64 = 0.01;
+/// Share of a new value in the running means of recoil and cycle.
+const NEW_SHARE: f64 = 0.2;
+
+impl<R: Real> TimedImpacts<R> {
+    /// The command at a sample.
+    #[inline(always)]
+    pub fn step(
+        &self,
+        state: &mut TimedImpactsState<R>,
+        measured: &Measurement<R>,
+    ) -> Command<R> {
+        self.look(state, measured);
+        let v = self.velocity(&state.window_m, measured.period_s);
+        let n = &mut state.numbers;
+        let rising = !n.coasting.is_set() & !n.free.is_set();
+        let known = R::zero().lt(n.ceiling_n);
+        let spent = known & n.ceiling_n.le(n.force_n) & v.lt(self.slowing_m_per_s);
+        let slips = self.slips(n, measured.position_m, v);
+        let cut = rising & (slips | spent);
+        n.seen_to_slip = R::select(cut, R::flag(slips), n.seen_to_slip);
+        n.force_n = R::select(rising, self.grown(n, v, measured), n.force_n);
+        n.coasting = R::select(cut, R::one(), n.coasting);
+        self.coast(n, measured);
+        let off = n.coasting.is_set() | n.free.is_set();
+        n.force_n = R::select(off, R::zero(), n.force_n);
+        Command::force(n.force_n)
+    }
+
+    /// Takes a sample in: window, clocks, the modeled force.
+    #[inline(always)]
+    fn look(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) {
+        let (x, period) = (measured.position_m, measured.period_s);
+        let first = state.numbers.seen.lt(R::constant(0.5));
+        for i in (1..WINDOW).rev() {
+            state.window_m[i] = R::select(first, x, state.window_m[i - 1]);
+        }
+        state.window_m[0] = x;
+        let n = &mut state.numbers;
+        n.seen = R::one();
+        n.start_m = R::select(first, x, n.start_m);
+        n.furthest_m = R::select(first, x, n.furthest_m.max(x));
+        n.force_n = R::select(first, self.force_start_n, n.force_n);
+        n.lead_s = R::select(first, self.lead_start_s, n.lead_s);
+        n.step_m = R::select(first, self.step_min_m, n.step_m);
+        n.elapsed_s = n.elapsed_s + period;
+        n.in_cycle_s = n.in_cycle_s + period;
+        let share = period / (self.actuator_lag_s + period);
+        n.modeled_n = share.mul_add(n.force_n - n.modeled_n, n.modeled_n);
+        n.peak_n = n.peak_n.max(n.modeled_n);
+        let [w0, w1, w2, ..] = state.window_m;
+        let beyond = (self.travel_m + self.free_margin_m) * R::constant(3.0);
+        n.free = R::select(beyond.le(w0 + w1 + w2), R::one(), n.free);
+    }
+
+    /// v̂ in m/s.
+    #[inline(always)]
+    fn velocity(&self, window: &[R; WINDOW], period_s: R) -> R {
+        let c = |value: f64| R::constant(value);
+        let [w0, w1, w2, w3, w4, w5, w6, w7] = *window;
+        let noise = self.noise_margin * self.noise_rms_m;
+        let three = c(0.5) * (w0 - w2) - noise * c(0.707_106_781_186_547_5);
+        let five = c(0.1) * (c(2.0) * (w0 - w4) + (w1 - w3)) - noise * c(0.316_227_766_016_837_9);
+        let eight = c(1.0 / 84.0)
+            * (c(7.0) * (w0 - w7) + c(5.0) * (w1 - w6) + c(3.0) * (w2 - w5) + (w3 - w4))
+            - noise * c(0.154_303_349_962_091_9);
+        three.max(five).max(eight).max(R::zero()) / period_s
+    }
+
+    /// Whether the force must be cut now.
+    #[inline(always)]
+    fn slips(&self, n: &ImpactNumbers<R>, x: R, v: R) -> R::Mask {
+        let travel = x - n.start_m;
+        n.step_m.le(n.lead_s.mul_add(v, travel)) & self.travel_min_m.lt(travel)
+    }
+
+    #[inline(always)]
+    fn grown(&self, n: &ImpactNumbers<R>, v: R, measured: &Measurement<R>) -> R {
+        let (zero, one) = (R::zero(), R::one());
+        let range = self.holding_m_per_s - self.slowing_m_per_s;
+        let b = (one - (v - self.slowing_m_per_s) / range).clamp(zero, one);
+        let known = zero.lt(n.ceiling_n);
+        let tau = R::select(known, self.rise_time_constant_s, self.search_time_constant_s);
+        let grown = n.force_n * (b * measured.period_s / tau + one);
+        let limited = measured.range.limit(grown);
+        R::select(known, limited.min(n.ceiling_n.max(n.force_n)), limited)
+    }
+
+    /// Coasts until the part rests; then plans the next cycle.
+    #[inline(always)]
+    fn coast(&self, n: &mut ImpactNumbers<R>, measured: &Measurement<R>) {
+        let (zero, one) = (R::zero(), R::one());
+        let coasting = n.coasting.is_set();
+        let count = R::constant(MEAN_SAMPLES);
+        n.coasted_s = R::select(coasting, n.coasted_s + measured.period_s, zero);
+        n.mean_count = R::select(coasting, n.mean_count + one, zero);
+        n.mean_sum_m = R::select(coasting, n.mean_sum_m + measured.position_m, zero);
+        let full = coasting & count.le(n.mean_count);
+        let mean = n.mean_sum_m / count;
+        let agrees = (mean - n.mean_m).abs().lt(self.settled_m);
+        n.mean_m = R::select(full, mean, n.mean_m);
+        n.mean_count = R::select(full, zero, n.mean_count);
+        n.mean_sum_m = R::select(full, zero, n.mean_sum_m);
+        let rests = full & agrees & self.coast_min_s.le(n.coasted_s);
+        let next = self.next_cycle(n);
+        *n = next.zip(n, |next, now| R::select(rests, next, now));
+    }
+
+    /// The cycle after this one, from where the part rests.
+    #[inline(always)]
+    fn next_cycle(&self, n: &ImpactNumbers<R>) -> ImpactNumbers<R> {
+        let (zero, one) = (R::zero(), R::one());
+        let share = R::constant(NEW_SHARE);
+        let slipped = n.seen_to_slip.is_set();
+        let beyond = n.step_m.lt(n.furthest_m - n.start_m);
+        let factor = R::select(beyond, R::constant(LEAD_UP), R::constant(LEAD_DOWN));
+        let lead = (n.lead_s * factor).clamp(self.lead_min_s, self.lead_max_s);
+        let recoil = share.mul_add((n.furthest_m - n.mean_m) - n.recoil_m, n.recoil_m);
+        let first = n.ceiling_n.le(zero);
+        let followed = self.breakaway_share.mul_add(n.peak_n - n.ceiling_n, n.ceiling_n);
+        let base = R::select(slipped, followed, n.ceiling_n);
+        let missing = (n.step_m - (n.furthest_m - n.start_m)) / n.step_m;
+        let correction = self.probe_ratio * missing.clamp(-R::constant(MOST_DOWN), one);
+        let ceiling = R::select(first, n.peak_n, base * (one + correction));
+        let mean_cycle = share.mul_add(n.in_cycle_s - n.cycle_s, n.cycle_s);
+        let cycle = R::select(first, R::constant(FIRST_CYCLE_S), mean_cycle);
+        let left_s = (self.target_s - n.elapsed_s).max(cycle);
+        let needed = (self.travel_m - n.mean_m) / left_s * cycle + recoil;
+        ImpactNumbers {
+            coasting: zero,
+            force_n: self.restart_ratio * ceiling,
+            peak_n: zero,
+            ceiling_n: ceiling,
+            start_m: n.mean_m,
+            furthest_m: n.mean_m,
+            lead_s: R::select(slipped, lead, n.lead_s),
+            step_m: needed.clamp(self.step_min_m, self.step_max_m),
+            recoil_m: recoil,
+            cycle_s: cycle,
+            in_cycle_s: zero,
+            coasted_s: zero,
+            ..*n
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! A steady feed helped by a vibrating stack.
+
+use super::fm_vibration::half_sine;
+use super::{Measurement, SteadyFeed};
+use crate::actuator::Command;
+use crate::parameters::parameters;
+use crate::real::Real;
+
+/// A constant feed, on which a piezo stack superimposes pulses in proportion to the measured force.
+///
+/// ```text
+/// w     = w_0                                       feed, that of [`SteadyFeed`]
+/// share = min(α F̄ / F_stack, 1) sin²(π u)            u = t / t_p in the pulse, 0 after it
+/// dF̄/dt = (F − F̄) / τ                               F as measured
+/// ```
+///
+/// The pulses push against the inertia of the tool and break the part loose while the mean force is only
+/// F_s / (1 + α). Where that is below the sliding friction, a slip ends with its pulse whatever the axis
+/// has stored: this is what vibration is good for, and on a stiff axis there is no need of it. In proportion
+/// to F̄, it is as gentle to a weak part as to a strong one. It is told nothing of the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+pub struct VibratedFeed<R> {
+    /// The feed.
+    pub feed: SteadyFeed<R>,
+    /// The pulses of the stack.
+    pub pulses: StackPulses<R>,
+}
+
+parameters! {
+    /// Pulses of a piezo stack.
+    pub struct StackPulses {
+        /// Pulses in a second, Hz.
+        pub frequency_hz,
+        /// t_p in s.
+        pub pulse_width_s,
+        /// α.
+        pub amplitude_ratio,
+        /// F_stack in N: the force of the full stroke against a part that does not move, as known.
+        pub stack_force_n,
+        /// τ in s.
+        pub force_filter_s,
+    }
+}
+
+parameters! {
+    /// What moves in a vibrated feed.
+    pub struct VibratedFeedState {
+        /// Time since the start, s.
+        pub elapsed_s,
+        /// F̄ in N.
+        pub mean_n,
+        /// Share of the stroke of this pulse.
+        pub amplitude,
+        /// Phase in cycles, 0 to 1.
+        pub phase_cycles,
+    }
+}
+
+impl<R: Real> VibratedFeedState<R> {
+    /// Before the first sample.
+    pub fn at_rest() -> Self {
+        let zero = R::zero();
+        Self { elapsed_s: zero, mean_n: zero, amplitude: zero, phase_cycles: zero }
+    }
+}
+
+impl<R: Real> VibratedFeed<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> VibratedFeed<S> {
+        VibratedFeed { feed: self.feed.map(f), pulses: self.pulses.map(f) }
+    }
+
+    /// The command at a sample.
+    #[inline(always)]
+    pub fn step(
+        &self,
+        state: &mut VibratedFeedState<R>,
+        measured: &Measurement<R>,
+    ) -> Command<R> {
+        let (zero, one, period) = (R::zero(), R::one(), measured.period_s);
+        let p = &self.pulses;
+        let new = period / (p.force_filter_s + period);
+        state.mean_n = new.mul_add(measured.force_n - state.mean_n, state.mean_n);
+        let u = state.phase_cycles / (p.frequency_hz * p.pulse_width_s);
+        let shape = half_sine(u.min(one));
+        let share = state.amplitude * shape * shape;
+        let next = p.frequency_hz.mul_add(period, state.phase_cycles);
+        let starts = one.le(next);
+        let wanted = p.amplitude_ratio * state.mean_n / p.stack_force_n;
+        state.amplitude = R::select(starts, wanted.clamp(zero, one), state.amplitude);
+        state.phase_cycles = next - R::flag(starts);
+        let feed_m_per_s = self.feed.speed(&mut state.elapsed_s, period);
+        Command { force_n: zero, feed_m_per_s, stack_share: share }
+    }
+}

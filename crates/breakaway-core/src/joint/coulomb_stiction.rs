@@ -1,0 +1,77 @@
+//! Rigid friction: stuck, or sliding.
+
+use super::lugre::stribeck_level;
+use super::{At, Rigid, engaged_level};
+use crate::real::Real;
+
+/// Coulomb friction with stiction, without bristles.
+///
+/// ```text
+/// stuck:    v = 0,  R = what it takes            as long as that is at most F_s(x)
+/// sliding:  R = g(v, x) sgn v + σ v              until v reaches 0 and g can hold it there
+/// g       = F_c(x) + (F_s(x) − F_c(x)) exp(−(v / v_s)²)
+/// ```
+///
+/// The levels are those of [`super::Lugre`]. The plant takes the force that stops the part within
+/// the step and limits it to the level: the implicit Euler choice of J. J. Moreau for dry friction
+/// (in: Nonsmooth Mechanics and Applications, CISM 302, Springer 1988), here on the midpoint rule.
+/// Stuck means v = 0 exactly: no drift, no presliding, and breakaway at F_s(x) at any loading rate.
+/// A reversal through zero without a stop is taken as if it happened at the start of the step, so
+/// the motion after it is of first order in the step; everything else is of second order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+pub struct CoulombStiction<R> {
+    /// F_s0 in N, stiction force at the seat.
+    pub stiction_n: R,
+    /// F_c0 in N, Coulomb force at the seat.
+    pub coulomb_n: R,
+    /// σ₂ in N s/m, if there is viscous friction.
+    pub viscous_n_s_per_m: Option<R>,
+    /// v_s in m/s.
+    pub stribeck_velocity_m_per_s: R,
+    /// l_f in m.
+    pub engagement_length_m: R,
+    /// F_end in N, friction left at x = l_f.
+    pub residual_n: R,
+    /// What the levels are multiplied by for backward motion, if they differ.
+    pub backward_ratio: Option<R>,
+}
+
+impl<R: Real> CoulombStiction<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> CoulombStiction<S> {
+        let v_s = self.stribeck_velocity_m_per_s;
+        CoulombStiction {
+            stiction_n: f("stiction_n", self.stiction_n),
+            coulomb_n: f("coulomb_n", self.coulomb_n),
+            viscous_n_s_per_m: self.viscous_n_s_per_m.map(|sigma| f("viscous_n_s_per_m", sigma)),
+            stribeck_velocity_m_per_s: f("stribeck_velocity_m_per_s", v_s),
+            engagement_length_m: f("engagement_length_m", self.engagement_length_m),
+            residual_n: f("residual_n", self.residual_n),
+            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
+        }
+    }
+
+    /// F_s(x) in N against forward motion: equation (5).
+    #[inline(always)]
+    pub fn stiction(&self, x: R) -> R {
+        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
+    }
+
+    /// What holds the part, stuck or sliding.
+    #[inline(always)]
+    pub(super) fn freeze(&self, sliding: R, at: &At<R>) -> Rigid<R> {
+        let (x, v, factor) = (at.position_m, at.velocity_m_per_s, at.level_factor);
+        let (end, length) = (self.residual_n, self.engagement_length_m);
+        let stuck = engaged_level(self.stiction_n, end, length, factor, x);
+        let levels = [self.stiction_n, self.coulomb_n];
+        let v_s = self.stribeck_velocity_m_per_s;
+        let slips = stribeck_level(levels, end, length, v_s, x, v, factor);
+        let level_n = R::select(sliding.is_set(), slips, stuck);
+        let backward_level_n = match self.backward_ratio {
+            Some(ratio) => level_n * ratio,
+            None => level_n,
+        };
+        Rigid { level_n, backward_level_n, viscous_n_s_per_m: self.viscous_n_s_per_m }
+    }
+}

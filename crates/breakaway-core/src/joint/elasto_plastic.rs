@@ -1,0 +1,58 @@
+//! Elasto-plastic friction with contact loss.
+
+use super::onset::slip_onset;
+use super::{At, Bristle, Lugre};
+use crate::real::Real;
+
+/// LuGre friction whose bristle gives back all of its first stretch.
+///
+/// ```text
+/// ż = v − α k_e |v| / g(v, x) · z
+/// α = 0                                                 while |z| ≤ e g/k_e, or z v ≤ 0 (unloading)
+/// α = 3 s² − 2 s³,   s = (|z| k_e/g − e) / (1 − e)       up to
+/// α = 1                                                 from |z| = g/k_e
+/// ```
+///
+/// R and g are those of [`Lugre`]. Source: Dupont, Hayward, Armstrong and Altpeter, IEEE TAC 47(5),
+/// 2002; their step between 0 and 1 is sinusoidal and differs by less than 0.011. Below e F_s(x)
+/// vibration moves nothing for good, where LuGre drifts. Between e F_s(x) and F_s(x) this law
+/// drifts too: less, the closer to e. Breakaway still depends on the loading rate as in LuGre.
+///
+/// Valid for 0 ≤ e < 1; with e → 1 the bristle is elastic until it breaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
+pub struct ElastoPlastic<R> {
+    /// Levels, bristle and guide.
+    pub friction: Lugre<R>,
+    /// e, the share of the settled deflection g/k_e that is elastic.
+    pub elastic_share: R,
+}
+
+impl<R: Real> ElastoPlastic<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ElastoPlastic<S> {
+        ElastoPlastic {
+            friction: self.friction.map(f),
+            elastic_share: f("elastic_share", self.elastic_share),
+        }
+    }
+
+    /// The bristle with α at the deflection that it will have at the time at which it is frozen: that
+    /// of its linear equation with the α of now, solved implicitly. With the α of now alone a step
+    /// would be of first order.
+    #[inline(always)]
+    pub(super) fn freeze(&self, z: R, at: &At<R>) -> Bristle<R> {
+        let (v, k) = (at.velocity_m_per_s, at.ahead_s);
+        let bristle = self.yielding(self.friction.freeze(at), z, v);
+        let g = bristle.friction_level_n;
+        let z_ahead = g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g);
+        self.yielding(bristle, z_ahead, v)
+    }
+
+    #[inline(always)]
+    fn yielding(&self, bristle: Bristle<R>, z: R, v: R) -> Bristle<R> {
+        let (k_e, g) = (bristle.stiffness_n_per_m, bristle.friction_level_n);
+        let onset = slip_onset(self.elastic_share, z, v, k_e, g);
+        Bristle { relaxation_n_per_m: onset * k_e, ..bristle }
+    }
+}

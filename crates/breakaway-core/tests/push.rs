@@ -1,0 +1,122 @@
+//! A push through something compliant: it yields to the part's motion within the step, and a contact
+//! can not pull.
+
+mod laws;
+mod support;
+
+use breakaway_core::disturbance::Factors;
+use breakaway_core::joint::{Joint, Lugre};
+use breakaway_core::plant::{Plant, PlantState, Push};
+use breakaway_core::test_models::paper_joint;
+use support::{Rig, UNDISTURBED, random};
+
+/// Whatever the law, the state and the stiffness of the contact: the force agrees with the velocity
+/// that comes of it, F = max(0, F_0 − S v_m), and the momentum with both.
+#[test]
+fn the_force_agrees_with_the_motion_that_it_causes() {
+    let law = Lugre { viscous_n_s_per_m: Some(60.0), ..paper_joint() };
+    for (name, joint) in laws::all(law) {
+        let (mut seed, mut rig) = (5, Rig::at(joint, 0.01));
+        let (mut open, mut closed) = (0, 0);
+        for n in 0..40_000 {
+            let (force_n, h) = (900.0 * random(&mut seed), 1e-5);
+            let s = 10.0_f64.powf(3.0 + 3.0 * random(&mut seed));
+            let factors = Factors { joint_force: 1.0 + 0.2 * random(&mut seed), ..UNDISTURBED };
+            let push = Push { force_n, yielding_n_s_per_m: Some(s) };
+            let plant = Plant { joint: &rig.joint, mass_kg: 1.0, push, factors };
+            let before = rig.state.velocity_m_per_s;
+            let moved = plant.step(rig.integrator, &mut rig.state, h);
+            let (f, v_m) = (moved.push_force_n, moved.mean_velocity_m_per_s);
+            let scale = force_n.abs() + s * v_m.abs();
+            assert!((f - (force_n - s * v_m).max(0.0)).abs() <= 1e-9 * scale, "{name} at {n}: {f}");
+            let momentum = rig.state.velocity_m_per_s - before - h * (f - moved.joint_force_n);
+            assert!(f >= 0.0 && momentum.abs() < 1e-13, "{name} at {n}: {f} {momentum:e}");
+            (open, closed) = (open + u32::from(f == 0.0), closed + u32::from(f > 0.0));
+            if rig.state.position_m.abs() > 0.05 {
+                rig.state = PlantState::at_rest();
+            }
+        }
+        assert!(open > 1000 && closed > 1000, "{name}: {open} {closed}");
+    }
+}
+
+/// Without compliance a yielding push is a rigid one, but for rounding.
+#[test]
+fn a_push_that_does_not_yield_is_rigid() {
+    for (name, joint) in laws::all(paper_joint()) {
+        let [rigid, yielding] = [None, Some(0.0)].map(|yielding_n_s_per_m| {
+            let mut rig = Rig::at(joint, 0.01);
+            for n in 0..3000 {
+                let force_n = 0.2 * f64::from(n);
+                rig.moved(Push { force_n, yielding_n_s_per_m }, 1e-5);
+            }
+            rig.state
+        });
+        let error = (rigid.position_m / yielding.position_m - 1.0).abs();
+        assert!(error < 1e-9 && rigid.position_m > 0.011, "{name}: {error:e}");
+    }
+}
+
+/// k of a contact spring in N/m, and the speed in m/s of what pushes through it.
+const CONTACT_N_PER_M: f64 = 2e6;
+const FEED_M_PER_S: f64 = 0.05;
+
+/// x and v of a part in LuGre friction after 30 ms behind a feed at constant speed, by steps of `h`:
+/// with the force at mid-step F = k (V t_m − x − h/2 v_m).
+fn fed(law: Lugre<f64>, h: f64) -> [f64; 2] {
+    let mut rig = Rig::at(Joint::Lugre(law), 0.0);
+    let steps = (0.03 / h).round() as u32;
+    for n in 0..steps {
+        let ahead_m = FEED_M_PER_S * (f64::from(n) + 0.5) * h - rig.state.position_m;
+        let push = Push {
+            force_n: CONTACT_N_PER_M * ahead_m,
+            yielding_n_s_per_m: Some(0.5 * h * CONTACT_N_PER_M),
+        };
+        rig.moved(push, h);
+    }
+    [rig.state.position_m, rig.state.velocity_m_per_s]
+}
+
+/// The same by explicit Runge-Kutta of order four on the equations as they are written, with the
+/// number of times that the contact opened.
+fn fed_explicitly(law: Lugre<f64>, h: f64) -> ([f64; 2], u32) {
+    let rates = |t: f64, [x, v, z]: [f64; 3]| {
+        let f_s = law.stiction_n + (law.residual_n - law.stiction_n) * x / law.engagement_length_m;
+        let f_c = law.coulomb_n + (law.residual_n - law.coulomb_n) * x / law.engagement_length_m;
+        let g = f_c + (f_s - f_c) * (-(v / law.stribeck_velocity_m_per_s).powi(2)).exp();
+        let z_rate = v - law.stiffness_n_per_m * v.abs() / g * z;
+        let push = (CONTACT_N_PER_M * (FEED_M_PER_S * t - x)).max(0.0);
+        [v, push - law.stiffness_n_per_m * z - law.damping_n_s_per_m * z_rate, z_rate]
+    };
+    let (mut y, mut opened, mut was_open) = ([0.0; 3], 0, true);
+    for n in 0..(0.03 / h).round() as u32 {
+        let t = f64::from(n) * h;
+        let at = |k: [f64; 3], s: f64| std::array::from_fn(|i| y[i] + s * k[i]);
+        let k1 = rates(t, y);
+        let k2 = rates(t + 0.5 * h, at(k1, 0.5 * h));
+        let k3 = rates(t + 0.5 * h, at(k2, 0.5 * h));
+        let k4 = rates(t + h, at(k3, h));
+        y = std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
+        let open = FEED_M_PER_S * (t + h) < y[0];
+        opened += u32::from(open && !was_open);
+        was_open = open;
+    }
+    ([y[0], y[1]], opened)
+}
+
+/// Stick-slip behind a soft contact: the part breaks loose, jumps ahead of the feed, out of contact,
+/// stops, and is caught up with.
+#[test]
+fn a_fed_part_jumps_as_explicit_integration_says() {
+    let law = Lugre { stiction_n: 900.0, ..paper_joint() };
+    let (exact, opened) = fed_explicitly(law, 1e-7);
+    assert!(opened > 0, "the contact opens");
+    let error = |h: f64| {
+        let ours = fed(law, h);
+        [(ours[0] / exact[0] - 1.0).abs(), (ours[1] - exact[1]).abs()]
+    };
+    let (coarse, fine) = (error(1e-5), error(2.5e-6));
+    // Found: 1.1e-4 of x and 3.3e-6 m/s, of second order.
+    assert!(coarse[0] < 1.5e-4 && coarse[1] < 5e-6, "{coarse:?}");
+    assert!(coarse[0] > 10.0 * fine[0] && coarse[1] > 10.0 * fine[1], "{coarse:?} {fine:?}");
+}

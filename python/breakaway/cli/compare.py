@@ -1,0 +1,236 @@
+"""``breakaway compare``: methods of extraction side by side, on the same parts."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from breakaway.cli.progress import shown_progress
+from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.errors import OutputError
+
+if TYPE_CHECKING:
+    from breakaway.comparison import Comparison
+    from breakaway.studies import StudyProgress
+
+Row = Mapping[str, Any]
+
+BEST = " *"
+"""Marks the best of a column."""
+
+
+def compare(
+    population: Annotated[
+        str, typer.Argument(help="Name of a preset, or path of a TOML file.")
+    ] = "seized_parts",
+    out: Annotated[
+        Path, typer.Option(help="Folder for parts, table, figures, page.", metavar="DIR")
+    ] = Path("comparison"),
+    runs: Annotated[
+        int | None, typer.Option(help="Parts that each method tries. Left out: 10,000.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of the parts. Left out: 0.")] = None,
+    method: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A method: name of a preset, or a TOML file; repeatable. Left out: all presets.",
+            metavar="NAME_OR_FILE",
+        ),
+    ] = None,
+    laws: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Friction laws, with commas or repeated. Left out: lugre,elasto_plastic,gms.",
+            metavar="LAWS",
+        ),
+    ] = None,
+    baseline: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A method to measure the others by; repeatable, the best counts. Left out: all.",
+            metavar="NAME",
+        ),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a comparison that DIR holds.")
+    ] = False,
+    threads: Annotated[
+        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+) -> None:
+    """Try methods of extraction on the same parts of a population, under several friction laws.
+
+    POPULATION is the name of a preset or a TOML file: of a population, or the
+    comparison.toml of an earlier comparison, which is then run again. The
+    folder receives the parts as they finish (Parquet), and in the end
+    table.csv, figures, and index.html, a page that needs no network. A
+    comparison that was interrupted goes on with --resume and computes nothing
+    twice.
+    """
+    from breakaway.comparison import compare_methods
+
+    named = [name.strip() for given in laws for name in given.split(",")] if laws else None
+    try:
+        with _progress() as progress:
+            done = compare_methods(
+                population,
+                method,
+                laws=named,
+                runs=runs,
+                seed=seed,
+                baselines=baseline,
+                out=out,
+                resume=resume,
+                threads=threads,
+                progress=progress,
+                notice=_notice,
+            )
+    except (KeyboardInterrupt, OutputError):
+        if (out / "manifest.json").exists():
+            _notice(f"finished parts are kept; go on with: {_again(out)}")
+        raise
+    if json:
+        say_json(_document(done))
+    else:
+        _show(done)
+
+
+def _again(out: Path) -> str:
+    """Give the command that goes on: the same, with --resume."""
+    import shlex
+
+    given = [word for word in sys.argv[1:] if word != "--resume"]
+    if not given or given[0] != "compare":  # called otherwise than as a command
+        given = ["compare", "--out", str(out)]
+    return shlex.join(["breakaway", *given, "--resume"])
+
+
+def _notice(sentence: str) -> None:
+    print(sentence, file=sys.stderr)
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[StudyProgress], None] | None]:
+    """Show how far the parts are, and then that figures are drawn."""
+    with shown_progress() as report, ExitStack() as after:
+        if report is None:
+            yield None
+            return
+        drawing = False
+
+        def tell(at: StudyProgress) -> None:
+            nonlocal drawing
+            report(at)
+            if at.runs_done >= at.runs_max and not drawing:
+                drawing = True
+                after.enter_context(busy("figures and page"))
+
+        yield tell
+
+
+def _document(done: Comparison) -> dict[str, Any]:
+    asked = done.asked
+    return {
+        "population": asked.population.name,
+        "methods": asked.names,
+        "laws": asked.laws,
+        "runs": asked.runs,
+        "seed": asked.seed,
+        "result": list(done.result),
+        "notes": list(done.notes),
+        "table": list(done.table),
+        "files": [str(path) for path in _files(done)],
+    }
+
+
+def _show(done: Comparison) -> None:
+    stack = any(row["stack_cycles_median"] is not None for row in done.table)
+    for law in done.asked.laws:
+        rows = [row for row in done.table if row["law"] == law]
+        say(_outcomes(law, rows), _harm(law, rows))
+        if stack:
+            say(_wear(law, rows))
+    say("*: best of its column; time, jump, force and velocity among those that free 90 %")
+    for sentence in done.result:
+        say(sentence)
+    for note in done.notes:
+        say(f"note: {note}")
+    for path in _files(done):
+        say(f"wrote {path}")
+
+
+def _files(done: Comparison) -> Sequence[Path]:
+    if done.folder is None:
+        return []
+    return sorted(p for p in done.folder.iterdir() if p.is_file() and p.name[0] != ".")
+
+
+def _outcomes(law: str, rows: Sequence[Row]) -> Sheet:
+    """Give what became of the parts: shares of all, in percent, with 95 % intervals."""
+    alone = ("force", "jump", "velocity")
+    shares = ("released", "gentle", "strict")
+    columns = ["method", *(f"{n} %" for n in shares), *(f"within {n} %" for n in alone)]
+    columns += ["best other", "only this", "only other", "p"]
+    sheet = Sheet(f"{law}: shares of {rows[0]['runs']} parts", columns, numbers=columns[1:])
+    for row in rows:
+        p = row["gentle_p"]
+        pairing = [row["against"] or "", row["gentle_only_this"], row["gentle_only_other"]]
+        sheet.add(
+            row["method"],
+            *(_share(row, name) for name in shares),
+            *(_marked(row, f"{name}_share", 100.0, ".4g") for name in alone),
+            *("" if value is None else str(value) for value in pairing),
+            "" if p is None else f"{p:.2g}",
+        )
+    return sheet
+
+
+def _harm(law: str, rows: Sequence[Row]) -> Sheet:
+    """Give what the parts suffered: medians, and the 99 % quantiles behind them."""
+    spreads = (
+        ("time_to_release_s", "time to release s", 1.0),
+        ("largest_jump_m", "largest jump mm", 1e3),
+        ("peak_over_breakaway", "peak/breakaway", 1.0),
+        ("release_velocity_m_per_s", "release m/s", 1.0),
+        ("largest_impact_work_j", "largest impact J", 1.0),
+        ("impulse_n_s", "impulse N s", 1.0),
+    )
+    columns = ["method", *(heading for _, heading, _ in spreads)]
+    sheet = Sheet(f"{law}: median, and 99 %", columns, numbers=columns[1:])
+    for row in rows:
+        cells = [
+            f"{_marked(row, f'{name}_median', factor)}, {_marked(row, f'{name}_p99', factor)}"
+            for name, _, factor in spreads
+        ]
+        sheet.add(row["method"], *cells)
+    return sheet
+
+
+def _wear(law: str, rows: Sequence[Row]) -> Sheet:
+    """Give what wears a piezo stack: medians."""
+    keys = ("stack_cycles_median", "rms_current_a_median", "stack_loss_w_median")
+    columns = ["method", "stack cycles", "RMS current A", "stack loss W"]
+    sheet = Sheet(f"{law}: wear of the stack, medians", columns, numbers=columns[1:])
+    for row in rows:
+        if row[keys[0]] is not None:
+            sheet.add(row["method"], *(_marked(row, key) for key in keys))
+    return sheet
+
+
+def _share(row: Row, name: str) -> str:
+    low, high = (100.0 * row[f"{name}_{key}"] for key in ("low", "high"))
+    return f"{_marked(row, f'{name}_share', 100.0, '.4g')} ({low:.3g} to {high:.3g})"
+
+
+def _marked(row: Row, key: str, factor: float = 1.0, digits: str = ".3g") -> str:
+    """Give a number, with a mark where it is the best of its column."""
+    if row[key] is None:
+        return "none"
+    best = BEST if key in str(row["best"]).split(";") else ""
+    return f"{row[key] * factor:{digits}}{best}"

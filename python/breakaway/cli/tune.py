@@ -1,0 +1,138 @@
+"""``breakaway tune``: numbers of a method chosen on training parts, scored on unseen ones."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from breakaway.cli.progress import shown_progress
+from breakaway.cli.quantity import show, split_unit
+from breakaway.cli.show import Sheet, say, say_json
+from breakaway.errors import OutputError
+
+if TYPE_CHECKING:
+    from breakaway.studies import StudyProgress
+    from breakaway.tuning import Tuning, TuningProgress
+
+
+def tune(
+    file: Annotated[Path, typer.Argument(help="TOML file of the tuning.", metavar="TUNING.toml")],
+    out: Annotated[
+        Path, typer.Option(help="Folder for trials, methods, tables and figures.", metavar="DIR")
+    ],
+    trials: Annotated[
+        int | None, typer.Option(min=1, help="Methods to try. Left out: as the file says.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the tuning that DIR holds.")
+    ] = False,
+    threads: Annotated[
+        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+) -> None:
+    """Tune a method on parts of a population, and score it on parts that tuning never saw.
+
+    The folder receives manifest.json first, then each trial as it finishes, and
+    in the end summary.json, best.toml (the recommended method, complete), a file
+    for each point of the front, tables (CSV) and figures. A tuning that was
+    interrupted or killed goes on with --resume, also with more --trials.
+    """
+    from breakaway.output import refuse_to_overwrite
+    from breakaway.tuning import load_tuning
+    from breakaway.tuning import tune as run_tuning
+
+    asked = load_tuning(file)
+    refuse_to_overwrite(file, out / "best.toml")
+    try:
+        with shown_progress(asked.name) as progress:
+            done = run_tuning(
+                asked,
+                out,
+                trials=trials,
+                resume=resume,
+                threads=threads,
+                progress=progress and _told(progress),
+                notice=_notice,
+            )
+    except (KeyboardInterrupt, OutputError):
+        if (out / "manifest.json").exists():
+            more = "" if trials is None else f" --trials {trials}"
+            _notice(
+                f"finished trials are kept; go on with: breakaway tune {file} --out {out}{more} "
+                "--resume"
+            )
+        raise
+    files = sorted(path for path in out.iterdir() if path.is_file() and path.name[0] != ".")
+    summary = done.summary
+    if json:
+        say_json(summary | {"files": [str(path) for path in files]})
+        return
+    if summary["recommended"]:
+        say(_scores(asked, summary), _numbers(asked, summary))
+    for sentence in summary["result"]:
+        say(sentence)
+    for note in summary["notes"]:
+        say(f"note: {note}")
+    for path in files:
+        say(f"wrote {path}")
+
+
+def _notice(sentence: str) -> None:
+    print(sentence, file=sys.stderr)
+
+
+def _told(progress: Callable[[StudyProgress], None]) -> Callable[[TuningProgress], None]:
+    """Tell the best so far beside how far the parts are."""
+    from breakaway.studies import StudyProgress
+
+    def tell(at: TuningProgress) -> None:
+        best = ", ".join(f"{split_unit(name)[0]} {show(name, v)}" for name, v in at.best.items())
+        doing = f"{at.doing}, best: {best}" if best else at.doing
+        progress(
+            StudyProgress(
+                runs_done=at.runs_done,
+                runs_found=at.runs_found,
+                runs_max=at.runs_max,
+                doing=doing,
+            )
+        )
+
+    return tell
+
+
+def _scores(asked: Tuning, summary: Mapping[str, Any]) -> Sheet:
+    """Give the objectives of start and front, training and unseen side by side."""
+    columns = [
+        "method",
+        *(f"{split_unit(name)[0]}: {on}" for name in asked.objectives for on in ON),
+    ]
+    sheet = Sheet("", columns, numbers=columns[1:])
+    rows = {row["score"]: row for row in summary["overfitting"]}
+    cells = [show(n, rows[n][f"start_{on}"]) for n in asked.objectives for on in ON]
+    sheet.add("as it was", *cells)
+    for row in summary["front"]:
+        name = f"{row['file']}, recommended" if row["recommended"] else row["file"]
+        cells = [show(n, row[f"{n}_{on}"]) for n in asked.objectives for on in ON]
+        sheet.add(name, *cells)
+    return sheet
+
+
+ON = ("training", "unseen")
+
+
+def _numbers(asked: Tuning, summary: Mapping[str, Any]) -> Sheet:
+    """Give the numbers of the recommended method beside what they were and could be."""
+    from breakaway.tuning.numbers import number_of
+
+    columns = ["number", "was", "is", "from", "to"]
+    sheet = Sheet("", columns, numbers=columns[1:])
+    for path, value in summary["recommended"]["numbers"].items():
+        span = asked.tune[path]
+        was = number_of(asked.method, path)
+        sheet.add(path, *(show(path, number) for number in (was, value, span.low, span.high)))
+    return sheet

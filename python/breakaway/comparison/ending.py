@@ -1,0 +1,166 @@
+"""The end of a comparison in its folder: table, figures, page, and last its summary."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from breakaway._core import __version__
+from breakaway.comparison.asked import KIND, Asked
+from breakaway.comparison.courses import Courses, courses_of
+from breakaway.comparison.table import Trials
+from breakaway.comparison.trial_files import trial_schema
+from breakaway.output import output_folder, write_atomically
+from breakaway.plots.comparison import LAW_WORDS, Cloud, plot_course, plot_scatter, plot_shares
+from breakaway.plots.style import save_figure
+from breakaway.report.comparison import ShownFigure, comparison_page
+from breakaway.studies.folder import FORMAT, SUMMARY, as_csv, as_json, identity_of
+from breakaway.studies.plan import Row
+from breakaway.trials import TRIAL_METRICS
+
+PAGE, TABLE, ASKED = "index.html", "table.csv", "comparison.toml"
+
+
+def manifest_of(asked: Asked) -> dict[str, Any]:
+    """Give what determines the results of a comparison, and what they look like."""
+    manifest = {
+        "format": FORMAT,
+        "breakaway_version": __version__,
+        "libraries": {name: version(name) for name in ("numpy", "scipy")},
+        "study": asked.model_dump(mode="json"),
+        "seed": asked.seed,
+        "metrics": list(TRIAL_METRICS),
+        "columns": [
+            {"name": f.name, "type": str(f.type), "unit": f.metadata[b"unit"].decode()}
+            for f in trial_schema()
+        ],
+    }
+    return manifest | {"identity": identity_of(manifest)}
+
+
+def ended(folder: Path) -> bool:
+    """Whether a folder has everything that the end writes."""
+    try:
+        files = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))["files"]
+        return all((folder / name).is_file() for name in files)
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def write_end(
+    asked: Asked,
+    trials: Trials,
+    table: Sequence[Row],
+    result: Sequence[str],
+    notes: Sequence[str],
+    folder: Path,
+) -> None:
+    """Write table, figures, page and the comparison itself, and last the summary."""
+    courses = courses_of(trials, asked.laws[0])
+    with output_folder(folder) as staging:
+        (staging / TABLE).write_text(as_csv(table), encoding="utf-8", newline="")
+        (staging / ASKED).write_text(asked.toml(), encoding="utf-8", newline="\n")
+        figures = _draw(asked, trials, table, courses, staging)
+        page = comparison_page(
+            population=asked.population,
+            methods=asked.methods,
+            laws=asked.laws,
+            runs=asked.runs,
+            seed=asked.seed,
+            table=table,
+            result=result,
+            notes=notes,
+            figures=figures,
+            courses={name: found.worst for name, found in courses.items()},
+        )
+        (staging / PAGE).write_text(page, encoding="utf-8", newline="\n")
+        files = sorted(path.name for path in staging.iterdir())
+    summary = {
+        "kind": KIND,
+        "population": asked.population.name,
+        "methods": asked.names,
+        "laws": asked.laws,
+        "runs": asked.runs,
+        "seed": asked.seed,
+        "breakaway_version": __version__,
+        "result": list(result),
+        "notes": list(notes),
+        "table": list(table),
+        "files": files,
+    }
+    write_atomically(folder / SUMMARY, as_json(summary))
+
+
+def _draw(
+    asked: Asked,
+    trials: Trials,
+    table: Sequence[Row],
+    courses: Mapping[str, Courses],
+    folder: Path,
+) -> list[ShownFigure]:
+    """Draw and save every figure, and give what the page shows of them."""
+    limits = asked.population.gentle, asked.population.strict
+    law = asked.laws[0]
+    shown = [
+        _saved(
+            "shares",
+            plot_shares(table),
+            folder,
+            "How many parts come out, and how gently.",
+            "Share of the parts, with its 95 % interval (Clopper and Pearson); all methods try "
+            "the same parts.",
+        ),
+        _saved(
+            "jump_against_peak",
+            plot_scatter(_clouds(trials), *limits),
+            folder,
+            "Jump against peak force, part by part.",
+            "Each point is a part: its largest jump over its largest force as a multiple of its "
+            "own breakaway force. Boxes: the gentle and, dashed, the strict limits; points within "
+            "may still fail by their velocity. Crosses: parts left in place.",
+        ),
+    ]
+    for place, (name, found) in enumerate(courses.items()):
+        figure = plot_course(found.median, found.worst)
+        shown.append(
+            _saved(
+                f"course_{place + 1}",
+                figure,
+                folder,
+                f"{name}, {LAW_WORDS[law]}.",
+                "Force and position of the part in the middle by its largest jump, of those that "
+                "came free; of the part with the largest jump; and of that one about its worst "
+                "slip, which is shaded. Dashed: the force that would break the joint loose where "
+                "the part is.",
+                method=name,
+            )
+        )
+    return shown
+
+
+def _clouds(trials: Trials) -> list[Cloud]:
+    return [
+        Cloud(
+            law=law,
+            method=name,
+            peak=trial.metrics["peak_over_breakaway"],
+            jump_m=trial.metrics["largest_jump_m"],
+            released=trial.released,
+            gentle=trial.within(trial.population.gentle),
+        )
+        for law, by_method in trials.items()
+        for name, trial in by_method.items()
+    ]
+
+
+def _saved(
+    key: str, figure: Figure, folder: Path, title: str, caption: str, method: str = ""
+) -> ShownFigure:
+    for suffix in ("svg", "png"):
+        save_figure(figure, folder / f"{key}.{suffix}")
+    return ShownFigure(key, title, caption, folder / f"{key}.svg", method)

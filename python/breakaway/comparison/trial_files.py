@@ -1,0 +1,132 @@
+"""The parts of a population in files: each holds what one method did to some of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from breakaway.batch.batch import unit_of
+from breakaway.comparison.asked import Asked
+from breakaway.output import write_atomically
+from breakaway.scenario.method import Method
+from breakaway.scenario.population import QUANTITIES, Law
+from breakaway.studies.part_files import as_bytes, flaw_of
+from breakaway.studies.parts import PARTS
+from breakaway.trials import TRIAL_METRICS, Trial, draw_parts
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some parts of one trial, which share a file."""
+
+    number: int
+    """Place of the file among all."""
+    law: Law
+    """Friction law of the joints."""
+    method: Method
+    """How the parts are freed."""
+    runs: range
+    """Numbers of the parts."""
+
+
+def chunks_of(asked: Asked) -> Iterator[Chunk]:
+    """Give the chunks of all trials, in the order in which they are computed."""
+    number = 0
+    for law in asked.laws:
+        for method in asked.methods:
+            for start in range(0, asked.runs, asked.runs_per_part):
+                runs = range(start, min(start + asked.runs_per_part, asked.runs))
+                yield Chunk(number, law, method, runs)
+                number += 1
+
+
+def trial_schema() -> Any:  # noqa: ANN401 - pyarrow has no type stubs
+    """Give the columns of a file: law, method, part, what the part is, what became of it."""
+    arrow: Any = import_module("pyarrow")
+    texts = arrow.dictionary(arrow.int8(), arrow.string())
+    types: dict[str, Any] = {"law": texts, "method": texts, "run_index": arrow.uint64()}
+    types |= dict.fromkeys([*QUANTITIES, *TRIAL_METRICS], arrow.float64())
+    return arrow.schema(
+        arrow.field(name, kind, nullable=False, metadata={"unit": unit_of(name)})
+        for name, kind in types.items()
+    )
+
+
+class TrialFiles:
+    """The files of a comparison's chunks."""
+
+    def __init__(self, folder: Path, asked: Asked) -> None:
+        self._folder = folder / PARTS
+        self._asked = asked
+        self._schema = trial_schema()
+
+    def path(self, chunk: Chunk) -> Path:
+        """Give the file of a chunk."""
+        return self._folder / f"part-{chunk.number:06d}.parquet"
+
+    def write(self, chunk: Chunk, trial: Trial) -> None:
+        """Write a chunk, whole or not at all.
+
+        Raises
+        ------
+        OutputError
+            The folder can not be written, or the disk is full.
+
+        """
+        arrow: Any = import_module("pyarrow")
+        same = np.zeros(len(chunk.runs), dtype=np.int8)
+        texts = [
+            arrow.DictionaryArray.from_arrays(arrow.array(same), [text])
+            for text in (chunk.law, chunk.method.name)
+        ]
+        columns: list[NDArray[Any]] = [np.asarray(chunk.runs, dtype=np.uint64)]
+        columns += [trial.parts[name] for name in QUANTITIES]
+        columns += [trial.metrics[name] for name in TRIAL_METRICS]
+        arrays = [*texts, *(arrow.array(column) for column in columns)]
+        table = arrow.Table.from_arrays(arrays, schema=self._schema)
+        write_atomically(self.path(chunk), as_bytes(table))
+
+    def flaw(self, chunk: Chunk) -> str | None:
+        """Say what is wrong with the file of a chunk, None where nothing is."""
+        return flaw_of(self.path(chunk), self._schema, lambda table: self._holds(table, chunk))
+
+    def _holds(self, table: Any, chunk: Chunk) -> bool:  # noqa: ANN401 - pyarrow has no type stubs
+        """Whether a table is about these parts, as the seed draws them."""
+        named = {
+            name: set(table[name].unique().to_pylist()) == {value}
+            for name, value in (("law", chunk.law), ("method", chunk.method.name))
+        }
+        drawn = draw_parts(self._asked.population, chunk.runs, seed=self._asked.seed)
+        return all(named.values()) and all(
+            np.array_equal(table[name].to_numpy(), values)
+            for name, values in {"run_index": np.asarray(chunk.runs), **drawn}.items()
+        )
+
+    def read(self, chunk: Chunk) -> Trial:
+        """Read a chunk as the trial it was written from."""
+        parquet: Any = import_module("pyarrow.parquet")
+        table = parquet.read_table(self.path(chunk), use_threads=False, partitioning=None)
+        columns = {name: table[name].to_numpy() for name in (*QUANTITIES, *TRIAL_METRICS)}
+        return Trial(
+            population=self._asked.population,
+            method=chunk.method,
+            law=chunk.law,
+            seed=self._asked.seed,
+            runs=chunk.runs,
+            parts={name: columns[name] for name in QUANTITIES},
+            metrics={name: columns[name] for name in TRIAL_METRICS},
+        )
+
+    def remove_beyond(self, count: int) -> list[Path]:
+        """Remove files that belong to no chunk, and give their paths."""
+        known = {f"part-{number:06d}.parquet" for number in range(count)}
+        beyond = [p for p in sorted(self._folder.glob("part-*.parquet")) if p.name not in known]
+        for path in beyond:
+            path.unlink()
+        return beyond

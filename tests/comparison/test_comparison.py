@@ -1,0 +1,220 @@
+"""What a comparison says is what its parts say, part by part."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pyarrow.dataset as ds
+import pytest
+from scipy import stats
+
+import breakaway as bk
+from breakaway.comparison.asked import Asked
+from breakaway.comparison.courses import course_of, kept_rows, worst_slip
+from breakaway.comparison.findings import sentences_of
+from breakaway.comparison.table import median_row, table_of, worst_row
+from breakaway.trials import Trial
+
+LAWS = ["lugre", "elasto_plastic"]
+
+
+def columns_of(folder: Path, law: str, method: str) -> dict[str, np.ndarray]:
+    wanted = (ds.field("law") == law) & (ds.field("method") == method)
+    table = ds.dataset(folder / "parts", format="parquet").to_table(filter=wanted)
+    return {name: table[name].to_numpy() for name in table.column_names}
+
+
+def test_the_folder_has_everything(whole, done):
+    names = {path.name for path in whole.iterdir()}
+    figures = {"shares", "jump_against_peak", "course_1", "course_2", "course_3"}
+    assert names == {
+        ".lock", "manifest.json", "comparison.toml", "table.csv", "summary.json", "index.html",
+        "parts", *(f"{name}.{kind}" for name in figures for kind in ("png", "svg")),
+    }  # fmt: skip
+    assert len(list((whole / "parts").iterdir())) == 6
+    summary = json.loads((whole / "summary.json").read_text())
+    assert summary["result"] == list(done.result)
+    assert summary["table"] == list(done.table)
+    assert [row["method"] for row in done.table[:3]] == ["follow", "ramp", "weak & <slow>"]
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("method", ["follow", "ramp", "weak & <slow>"])
+def test_the_table_follows_from_the_parts(whole, done, law, method):
+    """By numpy and scipy alone, from the files."""
+    data, row = columns_of(whole, law, method), done.row(law, method)
+    runs = len(data["run_index"])
+    assert sorted(data["run_index"]) == list(range(24))
+    free = np.isfinite(data["time_to_release_s"])
+    peak, jump = data["peak_over_breakaway"], data["largest_jump_m"]
+    velocity = data["release_velocity_m_per_s"]
+    found = {
+        "released": free,
+        "gentle": free & (peak <= 1.5) & (jump <= 0.5e-3) & (velocity <= 0.3),
+        "strict": free & (peak <= 1.25) & (jump <= 0.25e-3) & (velocity <= 0.1),
+    }
+    for name, mask in found.items():
+        interval = stats.binomtest(int(mask.sum()), runs).proportion_ci(0.95, "exact")
+        assert row[name] == mask.sum()
+        assert row[f"{name}_share"] == mask.sum() / runs
+        assert row[f"{name}_low"] == pytest.approx(interval.low, abs=1e-9)
+        assert row[f"{name}_high"] == pytest.approx(interval.high, abs=1e-9)
+    assert row["force_share"] == (free & (peak <= 1.5)).sum() / runs
+    assert row["jump_share"] == (free & (jump <= 0.5e-3)).sum() / runs
+    assert row["velocity_share"] == (free & (velocity <= 0.3)).sum() / runs
+    assert row["time_to_release_s_median"] == np.median(data["time_to_release_s"][free])
+    assert row["release_velocity_m_per_s_p99"] == np.quantile(velocity[free], 0.99)
+    for name in ("largest_jump_m", "peak_over_breakaway", "largest_impact_work_j", "impulse_n_s"):
+        assert row[f"{name}_median"] == np.median(data[name])
+        assert row[f"{name}_p99"] == np.quantile(data[name], 0.99)
+    assert row["stack_cycles_median"] is None
+    assert row["worst_run"] == data["run_index"][np.argmax(jump)]
+    released = np.sort(jump[free])
+    middle = jump[data["run_index"] == row["median_run"]][0]
+    assert middle == released[(len(released) - 1) // 2]
+
+
+def test_pairs_are_compared_part_by_part(whole, done):
+    row = done.row("lugre", "ramp")
+    assert row["against"] == "follow"
+    masks = []
+    for method in ("ramp", "follow"):
+        d = columns_of(whole, "lugre", method)
+        ok = np.isfinite(d["time_to_release_s"]) & (d["peak_over_breakaway"] <= 1.5)
+        ok &= (d["largest_jump_m"] <= 0.5e-3) & (d["release_velocity_m_per_s"] <= 0.3)
+        masks.append(ok)
+    ours, theirs = (masks[0] & ~masks[1]).sum(), (masks[1] & ~masks[0]).sum()
+    assert (row["gentle_only_this"], row["gentle_only_other"]) == (ours, theirs)
+    p = stats.binomtest(int(min(ours, theirs)), int(ours + theirs)).pvalue
+    assert row["gentle_p"] == pytest.approx(p, rel=1e-9)
+
+
+def test_the_csv_is_the_table(whole, done):
+    with (whole / "table.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["method"] for row in rows] == [row["method"] for row in done.table]
+    assert [float(row["gentle_low"]) for row in rows] == [row["gentle_low"] for row in done.table]
+
+
+def test_the_best_is_marked(done):
+    best = {row["method"]: row["best"].split(";") for row in done.table if row["law"] == "lugre"}
+    assert "gentle_share" in best["follow"]
+    assert "largest_jump_m_median" in best["follow"]
+    assert "gentle_share" not in best["ramp"]
+    assert best["weak & <slow>"] == [""]  # frees too few to be best in anything
+
+
+def test_sentences_say_what_was_found(done):
+    text = "\n".join(done.result)
+    assert "follow (100 %) clearly frees most parts gently under every law" in text
+    assert "ramp frees 0 % gently; what fails it most is the jump" in text
+    assert re.search(r"weak & <slow> leaves [\d.]+ to [\d.]+ % of the parts in place after", text)
+    assert "CAUTION" not in text
+
+
+def test_a_conclusion_of_one_law_is_flagged(done):
+    """Under one law of the two, both ways are made to do the same."""
+    follow = done.trials["lugre"]["follow"]
+    trials = {law: dict(by_method) for law, by_method in done.trials.items()}
+    trials["lugre"]["ramp"] = Trial(
+        follow.population, done.asked.methods[1], "lugre", 0, follow.runs, follow.parts,
+        follow.metrics,
+    )  # fmt: skip
+    said = sentences_of(done.asked, trials, table_of(trials, []))
+    assert (
+        "CAUTION, one law only: follow is gentler than ramp under elasto_plastic, not clearly "
+        "under lugre"
+    ) in said
+    assert any(s.startswith("CAUTION: which method frees most parts gently hangs") for s in said)
+    assert any("clearly frees more parts gently than follow" in s for s in said)
+
+
+def test_the_worst_part_replays_bit_for_bit(done):
+    for trial in done.trials["elasto_plastic"].values():
+        for row in (worst_row(trial), median_row(trial)):
+            run = trial.replay(row)
+            for name, values in trial.metrics.items():
+                value = getattr(run.metrics, name)
+                assert value == values[row] or (np.isnan(value) and np.isnan(values[row])), name
+
+
+def test_the_worst_slip_has_the_largest_jump(done):
+    for trial in done.trials["lugre"].values():
+        run = trial.replay(worst_row(trial))
+        start, end = worst_slip(run)
+        x = run.trace["position_m"]
+        assert x[end] - x[start] >= 0.98 * run.metrics.largest_jump_m
+        course = course_of(trial, worst_row(trial))
+        assert course.slip_s[1] > course.slip_s[0]
+        assert course.whole["force_n"].max() == run.trace["applied_force_n"].max()
+
+
+def test_thinning_keeps_extremes_and_ends():
+    values = np.sin(np.arange(100_000.0))
+    values[777], values[99_990] = 5.0, -7.0
+    rows = kept_rows(values, 100)
+    assert len(rows) <= 102
+    assert {0, 777, 99_990, 99_999} <= set(rows)
+    assert (np.diff(rows) > 0).all()
+
+
+def test_baselines_are_what_others_are_measured_by(inputs):
+    population, methods = inputs
+    done = bk.compare_methods(
+        population, methods, laws="lugre", runs=3, baselines=["ramp", "weak & <slow>"]
+    )
+    assert {row["method"]: row["against"] for row in done.table}["follow"] in (
+        "ramp",
+        "weak & <slow>",
+    )
+    assert done.folder is None
+    assert "under the law lugre alone" in done.notes[-1]
+
+
+def test_one_method_alone_is_a_comparison(inputs):
+    population, methods = inputs
+    done = bk.compare_methods(population, [methods[2]], laws=["two_region"], runs=2)
+    row = done.row("two_region", "weak & <slow>")
+    assert (row["against"], row["gentle_p"], row["best"]) == (None, None, "")
+    with pytest.raises(bk.StudyError, match=r"lugre, ramp: was not compared; the laws are two_reg"):
+        done.row("lugre", "ramp")
+
+
+def test_the_whole_comparison_reads_back(whole, done):
+    again = bk.compare_methods(whole / "comparison.toml", runs=2)
+    assert again.asked == done.asked.model_copy(update={"runs": 2})
+    assert Asked.parse(json.loads(done.asked.model_dump_json())) == done.asked
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"laws": ["lugr"]}, "laws: 'lugr' is not one of .*; did you mean 'lugre'?"),
+        ({"laws": []}, "laws: "),
+        ({"laws": ["gms", "gms"]}, "laws: 'gms' is there twice"),
+        ({"runs": 0}, "runs: 0 is not >= 1"),
+        ({"seed": -1}, "seed: -1 is not >= 0"),
+        ({"methods": []}, "methods: "),
+        ({"methods": ["none"]}, "none: is neither a file nor a preset; presets: "),
+        ({"baselines": ["none"]}, "baselines: 'none' is not one of follow, ramp, weak"),
+        ({"threads": 0}, "threads: 0 is not a whole number >= 1"),
+        ({"population": "none"}, "none: is neither a file nor a preset"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(inputs, tmp_path, changes, words):
+    population, methods = inputs
+    asked = {"population": population, "methods": methods, "out": tmp_path / "out", **changes}
+    with pytest.raises(bk.BreakawayError, match=words) as error:
+        bk.compare_methods(**asked)
+    assert error.value.exit_code == 2
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_same_method_twice_is_refused(inputs):
+    population, methods = inputs
+    with pytest.raises(bk.StudyError, match="methods: 'ramp' is there twice; give each once"):
+        bk.compare_methods(population, [methods[1], methods[1]])

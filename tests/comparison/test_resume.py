@@ -1,0 +1,156 @@
+"""Whatever ends a comparison, what was finished stays, and going on gives the same bytes."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import breakaway as bk
+from breakaway.comparison.asked import Asked
+
+SCRIPT = """
+import sys
+import breakaway as bk
+bk.compare_methods(sys.argv[1], out=sys.argv[2], resume=True, threads=1)
+"""
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name != ".lock"
+    }
+
+
+@pytest.fixture
+def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave figures and page out, which take longer than the trials."""
+    monkeypatch.setattr("breakaway.comparison.comparing.write_end", lambda *_: None)
+
+
+@pytest.fixture(scope="module")
+def small(whole: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give a comparison in many files, as TOML."""
+    asked = Asked.parse(
+        bk.compare_methods(whole / "comparison.toml", runs=1).asked.model_dump()
+        | {"runs": 24, "runs_per_part": 2}
+    )
+    path = tmp_path_factory.mktemp("small") / "small.toml"
+    path.write_text(asked.toml())
+    return path
+
+
+def test_threads_do_not_matter(inputs, whole, tmp_path):
+    population, methods = inputs
+    bk.compare_methods(
+        population, methods, laws=["lugre", "elasto_plastic"], runs=24, out=tmp_path, threads=1
+    )
+    assert contents(tmp_path) == contents(whole)
+
+
+@pytest.mark.usefixtures("no_figures")
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_a_killed_process_loses_no_finished_part(small, tmp_path):
+    undisturbed, folder = tmp_path / "undisturbed", tmp_path / "killed"
+    bk.compare_methods(small, out=undisturbed)
+    process = subprocess.Popen([sys.executable, "-c", SCRIPT, str(small), str(folder)])
+    while len(list((folder / "parts").glob("part-*"))) < 5:
+        assert process.poll() is None
+        time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    kept = {p: p.stat().st_mtime_ns for p in (folder / "parts").glob("part-*")}
+    assert 5 <= len(kept) < 72
+    assert not (folder / "summary.json").exists()
+    found = []
+    bk.compare_methods(
+        small, out=folder, resume=True, progress=lambda at: found.append(at.runs_found)
+    )
+    assert found[-1] == 2 * len(kept)
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept  # not computed again
+    assert contents(folder) == contents(undisturbed)
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_ctrl_c_keeps_finished_parts(small, tmp_path):
+    def stop(at):
+        if at.runs_done >= 31:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        bk.compare_methods(small, out=tmp_path / "out", progress=stop)
+    assert len(list((tmp_path / "out" / "parts").iterdir())) == 15
+
+
+def test_a_finished_comparison_computes_and_draws_nothing(whole, tmp_path, monkeypatch):
+    folder = shutil.copytree(whole, tmp_path / "done")
+    for name in ("run_trial", "write_end"):
+        monkeypatch.setattr(
+            f"breakaway.comparison.comparing.{name}", lambda *_, **__: pytest.fail("again")
+        )
+    bk.compare_methods(folder / "comparison.toml", out=folder, resume=True)
+    assert contents(folder) == contents(whole)
+
+
+def test_a_missing_file_of_the_end_is_made_again(whole, tmp_path):
+    folder = shutil.copytree(whole, tmp_path / "done")
+    (folder / "course_2.svg").unlink()
+    bk.compare_methods(folder / "comparison.toml", out=folder, resume=True)
+    assert contents(folder) == contents(whole)
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_damaged_parts_are_computed_again_and_said(whole, tmp_path):
+    folder = shutil.copytree(whole, tmp_path / "damaged")
+    files = sorted((folder / "parts").iterdir())
+    files[0].write_bytes(files[0].read_bytes()[:-20])
+    content = bytearray(files[1].read_bytes())
+    content[len(content) // 3] ^= 0x10
+    files[1].write_bytes(content)
+    shutil.copy(files[3], files[2])  # the same parts under another law
+    (folder / "parts" / "part-000099.parquet").write_bytes(b"")
+    said = []
+    bk.compare_methods(folder / "comparison.toml", out=folder, resume=True, notice=said.append)
+    assert contents(folder) == contents(whole)
+    assert [sentence.split()[0] for sentence in said[:3]] == [path.name for path in files[:3]]
+    assert all(sentence.endswith("its 24 parts are computed again") for sentence in said[:3])
+    assert said[3] == "part-000099.parquet does not belong to the comparison and was removed"
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"runs": 23}, "study.runs is 24 there and 23 now"),
+        ({"seed": 1}, "study.seed is 0 there and 1 now"),
+        ({"laws": ["lugre"]}, "study.laws is "),
+    ],
+)
+def test_another_comparison_is_refused(whole, changes, words):
+    before = contents(whole)
+    for resume in (True, False):
+        with pytest.raises(bk.StudyError, match="holds another comparison: ") as error:
+            bk.compare_methods(whole / "comparison.toml", out=whole, resume=resume, **changes)
+        assert words in str(error.value)
+    assert contents(whole) == before
+
+
+def test_without_resume_a_comparison_is_left_alone(whole):
+    with pytest.raises(bk.StudyError, match="already holds this comparison; go on with --resume"):
+        bk.compare_methods(whole / "comparison.toml", out=whole)
+
+
+def test_a_place_that_is_no_folder_is_refused(inputs, tmp_path):
+    population, methods = inputs
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(bk.StudyError, match="is a file, not a folder; give a folder"):
+        bk.compare_methods(population, methods, out=tmp_path / "file")
+    with pytest.raises(bk.OutputError, match="can not be written"):
+        bk.compare_methods(population, methods, out=tmp_path / "file" / "out")
+    assert (tmp_path / "file").read_text() == "mine"
