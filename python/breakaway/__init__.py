@@ -103,6 +103,9 @@ if TYPE_CHECKING:
     )
     from breakaway.simulation import simulate
     from breakaway.studies import (
+        AgreementStudy,
+        AgreementTable,
+        AgreementVariant,
         ComparedController,
         CompareStudy,
         CompareTable,
@@ -110,6 +113,7 @@ if TYPE_CHECKING:
         RobustnessTable,
         SensitivityStudy,
         SensitivityTable,
+        SmallestTable,
         StudyProgress,
         StudyResult,
         SweepStudy,
@@ -232,6 +236,9 @@ _HOMES = {
         "tune",
     ),
     "breakaway.studies": (
+        "AgreementStudy",
+        "AgreementTable",
+        "AgreementVariant",
         "ComparedController",
         "CompareStudy",
         "CompareTable",
@@ -239,6 +246,7 @@ _HOMES = {
         "RobustnessTable",
         "SensitivityStudy",
         "SensitivityTable",
+        "SmallestTable",
         "StudyProgress",
         "StudyResult",
         "SweepStudy",
@@ -251,6 +259,9 @@ _HOMES = {
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
+    "AgreementStudy",
+    "AgreementTable",
+    "AgreementVariant",
     "BandLimitedDisturbance",
     "Batch",
     "BreakawayError",
@@ -322,6 +333,7 @@ __all__ = [
     "SensitivityStudy",
     "SensitivityTable",
     "Sensors",
+    "SmallestTable",
     "StackPulses",
     "SteadyFeed",
     "StepReference",

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, TypeVar
 
 from breakaway.design.pole_placement import pole_placement, residual_n
 from breakaway.scenario.controller import (
     AnyController,
     FmVibration,
     Gains,
-    Pid,
     PidSettings,
     PolePlacement,
     TwoStep,
 )
-from breakaway.scenario.joint import AnyJoint, ElastoPlastic, Gms
+from breakaway.scenario.joint import AnyJoint, CoulombStiction, ElastoPlastic, Gms
+from breakaway.scenario.model import Model
 from breakaway.scenario.scenario import Scenario
+
+AnyPart = TypeVar("AnyPart", bound=Model)
 
 
 def resolve(scenario: Scenario) -> Scenario:
@@ -53,7 +56,7 @@ def resolve(scenario: Scenario) -> Scenario:
             "diverged_force_n": 20 * joint.stiction_n
             if limits.diverged_force_n is None
             else limits.diverged_force_n,
-            "breakaway_travel_m": 2 * joint.stiction_n / joint.stiffness_n_per_m
+            "breakaway_travel_m": _breakaway_travel_m(joint)
             if limits.breakaway_travel_m is None
             else limits.breakaway_travel_m,
         }
@@ -67,21 +70,29 @@ def resolve(scenario: Scenario) -> Scenario:
     )
 
 
+def _breakaway_travel_m(joint: AnyJoint) -> float:
+    """Twice what bristles can stretch; a rigid joint is loose once it has moved at all."""
+    if isinstance(joint, CoulombStiction):
+        return 1e-6 * joint.engagement_length_m
+    return 2 * joint.stiction_n / joint.stiffness_n_per_m
+
+
 def with_gains(scenario: Scenario) -> AnyController:
     """Give the controller with its gains as numbers, if it has any."""
-    controller = scenario.controller
-    if not isinstance(controller, Pid | FmVibration | TwoStep):
-        return controller
-    if isinstance(controller, Pid):
-        return controller.model_copy(update={"gains": given_gains(controller.gains, scenario)})
-    update: dict[str, object] = {"pid": _pid_with_gains(controller.pid, scenario)}
-    if isinstance(controller, TwoStep):
-        update["vibration_gains"] = given_gains(controller.vibration_gains, scenario)
-    return controller.model_copy(update=update)
+    return _with_gains(scenario.controller, scenario)
 
 
-def _pid_with_gains(pid: PidSettings, scenario: Scenario) -> PidSettings:
-    return pid.model_copy(update={"gains": given_gains(pid.gains, scenario)})
+def _with_gains(part: AnyPart, scenario: Scenario) -> AnyPart:
+    """Give a controller, or a part of one, with its gains as numbers."""
+    update: dict[str, object] = {}
+    if isinstance(part, PidSettings):
+        update["gains"] = given_gains(part.gains, scenario)
+    elif isinstance(part, FmVibration):
+        update["pid"] = _with_gains(part.pid, scenario)
+    elif isinstance(part, TwoStep):
+        update["breakaway"] = _with_gains(part.breakaway, scenario)
+        update["vibration"] = _with_gains(part.vibration, scenario)
+    return part.model_copy(update=update) if update else part
 
 
 def given_gains(gains: Gains | PolePlacement, scenario: Scenario) -> Gains:
@@ -107,9 +118,9 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
     infinite = float("inf")
     controller = values["controller"]
     _name_as_the_core(values)
-    for gains in _gain_tables(controller):
-        del gains["kind"]
-    _leave_out_zero(controller.get("pid", controller), "derivative_filter_s")
+    for pid in _pid_tables(controller):
+        del pid["gains"]["kind"]
+        _leave_out_zero(pid, "derivative_filter_s")
     disturbance = values["disturbance"]
     law = {"kind": disturbance.pop("law")}
     if "bandwidth_hz" in disturbance:
@@ -168,7 +179,10 @@ def _leave_out_zero(values: dict[str, Any], name: str) -> None:
         values[name] = None
 
 
-def _gain_tables(controller: dict[str, Any]) -> list[dict[str, Any]]:
-    pid = controller.get("pid", controller)
-    tables = [pid[key] for key in ("gains",) if key in pid]
-    return tables + [controller[key] for key in ("vibration_gains",) if key in controller]
+def _pid_tables(controller: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Every table of a controller that is a PID, however deep."""
+    if "gains" in controller:
+        yield controller
+    for value in controller.values():
+        if isinstance(value, dict):
+            yield from _pid_tables(value)

@@ -71,7 +71,11 @@ def controllers(i):
         "pid": bk.Pid(**settings),
         "fm_vibration": bk.FmVibration(pid=pid, vibration=pulses(i)),
         "two_step": bk.TwoStep(
-            pid=pid, vibration_gains=WEAK, vibration=pulses(i), breakaway_travel_m=2.5e-5
+            breakaway=bk.Pid(**settings),
+            vibration=bk.FmVibration(
+                pid=pid.model_copy(update={"gains": WEAK}), vibration=pulses(i)
+            ),
+            breakaway_travel_m=2.5e-5,
         ),
     }
 
@@ -121,6 +125,133 @@ KINDS = list(
 )
 CASES = {"-".join(kinds): case(i, *kinds) for i, kinds in enumerate(KINDS)}
 
+STACK = bk.Piezo(
+    stroke_m=38e-6,
+    stiffness_n_per_m=1e8,
+    tip_mass_kg=0.02,
+    damping_n_s_per_m=200.0,
+    hysteresis_share=0.4,
+    preload_n=800.0,
+    capacitance_f=13e-6,
+    loss_tangent=0.02,
+    voltage_max_v=120.0,
+    current_max_a=10.0,
+    amplifier_bandwidth_hz=5000.0,
+)
+
+
+def axis(tip):
+    return bk.FeedAxis(
+        speed_max_m_per_s=0.2,
+        acceleration_max_m_per_s2=200.0,
+        stiffness_n_per_m=3e7,
+        damping_n_s_per_m=8e3,
+        tool_mass_kg=2.0,
+        tip=tip,
+        contact=bk.Contact(stiffness_n_per_m=1e8, damping_n_s_per_m=3e3, gap_m=1e-6),
+    )
+
+
+FORCE = bk.ForceActuator(force_max_n=900.0, bandwidth_hz=3000.0, force_rate_max_n_per_s=2e6)
+FEED = {"speed_m_per_s": 0.1, "approach_m_per_s": 0.01, "approach_s": 5e-4}
+RAMP = bk.ForceRamp(rate_n_per_s=1.5e5, travel_m=LENGTH_M)
+IMPACTS = bk.TimedImpacts(
+    travel_m=LENGTH_M,
+    target_s=8e-3,
+    force_start_n=200.0,
+    search_time_constant_s=1e-3,
+    rise_time_constant_s=5e-4,
+    slowing_m_per_s=0.1,
+    holding_m_per_s=0.3,
+    step_min_m=8e-5,
+    step_max_m=3e-4,
+    travel_min_m=2e-5,
+    coast_min_s=2e-4,
+    settled_m=1e-5,
+    lead_start_s=2e-4,
+)
+VIBRATED = bk.VibratedFeed(
+    feed=bk.FeedSettings(**FEED),
+    pulses=bk.StackPulses(
+        frequency_hz=1000.0,
+        pulse_width_s=5e-4,
+        amplitude_ratio=0.6,
+        stack_force_n=2000.0,
+        force_filter_s=5e-4,
+    ),
+)
+SENSORS = bk.Sensors(
+    position=bk.PositionSensor(noise_rms_m=2e-8, bandwidth_hz=2e4, delay_samples=1),
+    force=bk.ForceSensor(noise_rms_n=1.0, quantum_n=0.5),
+)
+BLURRED = bk.Sensors(position=bk.PositionSensor(noise_rms_m=1e-7, quantum_m=5e-8))
+WATCH = bk.Watch(jump_max_m=5e-5, frozen_max_s=1e-3)
+STEPS = {
+    "ramp": RAMP,
+    "pid": controllers(7)["pid"],
+    "impacts": IMPACTS,
+    "fm": controllers(5)["fm_vibration"],
+}
+
+
+def two_steps(breakaway, vibration):
+    return bk.TwoStep(
+        breakaway=STEPS[breakaway], vibration=STEPS[vibration], breakaway_travel_m=2.5e-5
+    )
+
+
+PUSHED = {
+    "force-ramp-seen": ("lugre", FORCE, RAMP, {"sensors": SENSORS, "watch": WATCH}),
+    "force-impacts": ("coulomb_stiction", FORCE, IMPACTS, {}),
+    "push_only-impacts-blurred": (
+        "gms",
+        bk.PushOnlyActuator(force_max_n=900.0),
+        IMPACTS,
+        {"sensors": BLURRED, "watch": bk.Watch(jump_max_m=5e-5)},
+    ),
+    "force-pid-seen": (
+        "elasto_plastic",
+        FORCE,
+        controllers(7)["pid"],
+        {"sensors": SENSORS, "watch": WATCH},
+    ),
+    "force-two_step-ramp-impacts": ("coulomb_stiction", FORCE, two_steps("ramp", "impacts"), {}),
+    "force-two_step-ramp-fm": ("lugre", FORCE, two_steps("ramp", "fm"), {"sensors": SENSORS}),
+    "force-two_step-pid-impacts": ("gms", FORCE, two_steps("pid", "impacts"), {"watch": WATCH}),
+    "axis-steady": ("lugre", axis(bk.RigidTip()), bk.SteadyFeed(**FEED), {}),
+    "stack-vibrated": ("two_region", axis(STACK), VIBRATED, {}),
+    "stack-vibrated-seen": ("gms", axis(STACK), VIBRATED, {"sensors": SENSORS, "watch": WATCH}),
+}
+MORE_JOINTS = {
+    "elasto_plastic": bk.ElastoPlastic(
+        **JOINTS["lugre"].model_dump(exclude={"law"}), elastic_share=0.6
+    ),
+    "gms": bk.Gms(
+        **JOINTS["lugre"].model_dump(exclude={"law"}), elements=4, attraction_n_per_s=2e6
+    ),
+    "coulomb_stiction": bk.CoulombStiction(
+        stiction_n=450.0,
+        coulomb_n=360.0,
+        stribeck_velocity_m_per_s=0.09,
+        engagement_length_m=LENGTH_M,
+    ),
+}
+
+
+def pushed(i, joint, actuator, controller, seen):
+    """Give a scenario of kinds that the product above leaves out."""
+    timing = {"steps_per_period": (1, 3)[i % 2], "one_sample_delay": i % 3 == 0}
+    return case(i, "lugre", "pid", "uniform", "joint_force").with_(
+        joint=(JOINTS | MORE_JOINTS)[joint],
+        actuator=actuator,
+        controller=controller,
+        timing=bk.Timing(duration_s=0.008, **timing),
+        **seen,
+    )
+
+
+CASES |= {name: pushed(i, *kinds) for i, (name, kinds) in enumerate(PUSHED.items())}
+
 
 def rows_around(scenario, path, count, rng):
     """Values within some percent of the scenario's own, all of them valid."""
@@ -128,7 +259,14 @@ def rows_around(scenario, path, count, rng):
     for name in path.split("."):
         values = values[name]
     if values is None:  # a limit that is not set: what some runs exceed and some do not
-        typical = {"peak_force_max_n": 700.0, "jump_max_m": 1e-5}
+        typical = {
+            "peak_force_max_n": 700.0,
+            "jump_max_m": 1e-5,
+            "after_release_s": 3e-4,
+            "bandwidth_hz": 1e4,
+            "quantum_m": 1e-9,
+            "quantum_n": 1e-2,
+        }
         values = typical.get(path.rpartition(".")[2], 0.1)
         return np.where(rng.random(count) < 0.2, values, 1e3 * values)
     if values == 0.0:
@@ -217,10 +355,14 @@ def test_cases_end_in_every_way():
     assert min(happened.values()) > 30, happened
 
 
-ALONE = {
-    kind: next(s for name, s in CASES.items() if name.startswith(kind))
-    for kind in ("lugre-pid", "lugre-fm", "lugre-two", "two_region-pid", "two_region-two")
-} | {"band_limited": CASES["lugre-pid-band_limited-friction_level"]}
+ALONE = (
+    {name: CASES[name] for name in ("force-ramp-seen", "force-impacts", "stack-vibrated")}
+    | {
+        kind: next(s for name, s in CASES.items() if name.startswith(kind))
+        for kind in ("lugre-pid", "lugre-fm", "lugre-two", "two_region-pid", "two_region-two")
+    }
+    | {"band_limited": CASES["lugre-pid-band_limited-friction_level"]}
+)
 
 
 @pytest.mark.parametrize("kind", ALONE)
@@ -244,11 +386,27 @@ def test_numbers_are_found_in_every_room():
         "disturbance.hold_s",
         "disturbance.bandwidth_hz",
         "actuator.force_max_n",
+        "actuator.bandwidth_hz",
+        "actuator.stiffness_n_per_m",
+        "actuator.contact.gap_m",
+        "actuator.tip.hysteresis_share",
+        "sensors.position.noise_rms_m",
+        "sensors.force.quantum_n",
+        "watch.jump_max_m",
+        "watch.frozen_max_s",
+        "controller.rate_n_per_s",
+        "controller.force_start_n",
+        "controller.feed.approach_s",
+        "controller.pulses.amplitude_ratio",
+        "limits.after_release_s",
         "controller.gains.ki_n_per_m_s",
         "controller.derivative_filter_s",
         "controller.pid.tracking_time_s",
-        "controller.vibration_gains.kp_n_per_m",
-        "controller.vibration.pulse_width_s",
+        "controller.breakaway.gains.kp_n_per_m",
+        "controller.breakaway.rate_n_per_s",
+        "controller.vibration.pid.gains.kp_n_per_m",
+        "controller.vibration.vibration.pulse_width_s",
+        "controller.vibration.force_start_n",
         "controller.breakaway_travel_m",
         "limits.diverged_error_m",
         "limits.peak_force_max_n",

@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+from breakaway.comparison.asked import ask
+
 Call = Callable[..., Any]
 COMMAND = [sys.executable, "-m", "breakaway.cli.main"]
 POPULATION = """
@@ -131,8 +133,10 @@ def test_an_unknown_population_exits_with_2(call: Call, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(given: list[str], tmp_path: Path) -> None:
-    out = tmp_path / "my out"
-    words = [*given, "--out", str(out), "--runs", "100000"]
+    out, file = tmp_path / "my out", tmp_path / "comparison.toml"
+    asked = ask(given[1], [given[3], given[5]]).model_copy(update={"runs_per_part": 50})
+    file.write_text(asked.toml())
+    words = ["compare", str(file), "--out", str(out), "--runs", "100000"]
     process = subprocess.Popen(
         [*COMMAND, *words],
         stdout=subprocess.PIPE,

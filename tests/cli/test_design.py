@@ -72,12 +72,24 @@ def test_an_unstable_loop_is_a_finding_unless_stability_is_required(
         (
             {
                 "kind": "two_step",
-                "pid": SETTINGS,
-                "vibration": PULSES,
-                "vibration_gains": UNSTABLE,
+                "breakaway": {"kind": "pid"} | SETTINGS,
+                "vibration": {
+                    "kind": "fm_vibration",
+                    "pid": {"gains": UNSTABLE},
+                    "vibration": PULSES,
+                },
                 "breakaway_travel_m": 3e-5,
             },
             ["step 1, pid", "step 2, vibration"],
+        ),
+        (
+            {
+                "kind": "two_step",
+                "breakaway": {"kind": "pid"} | SETTINGS,
+                "vibration": {"kind": "timed_impacts", "travel_m": 0.1, "target_s": 8.0},
+                "breakaway_travel_m": 3e-5,
+            },
+            ["step 1, pid"],
         ),
     ],
 )

@@ -141,7 +141,8 @@ def test_the_walk_reaches_all_unions_and_depths(sites):
         "joint[lugre].stribeck_velocity_m_per_s",
         "joint[two_region].coulomb_n",
         "reference[trapezoidal_velocity].acceleration_m_per_s2",
-        "controller[two_step].pid.gains[pole_placement].static_share",
+        "controller[two_step].breakaway[pid].gains[pole_placement].static_share",
+        "controller[two_step].vibration[timed_impacts].lead_max_s",
         "controller[fm_vibration].vibration.pulse_width_s",
         "limits.peak_force_max_n",
     } <= labels

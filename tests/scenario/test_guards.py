@@ -80,3 +80,118 @@ def test_a_diverged_run_tells_of_the_sample_that_ended_it(paper):
     assert run.trace["t_s"][-1] == pytest.approx(m.simulated_s)
     assert abs(run.trace["applied_force_n"][-1]) == pytest.approx(m.peak_force_n)
     assert run.trace["position_m"][-1] == m.final_position_m
+
+
+FEED = {"speed_m_per_s": 0.0125, "approach_m_per_s": 0.001, "approach_s": 0.01}
+
+
+def test_an_actuator_that_does_not_heed_its_controller(paper):
+    axis = bk.load_method("steady_feed").actuator
+    feed = bk.SteadyFeed(**FEED)
+    refused(paper, {}, "actuator.kind: 'feed_axis'", "'pid'", "give ideal", actuator=axis)
+    refused(paper, {}, "actuator.kind: 'ideal'", "'steady_feed'", "feed_axis", controller=feed)
+    assert paper.with_(actuator=axis, controller=feed).actuator == axis
+    vibrated = bk.load_method("vibrated_feed").controller
+    words = ("actuator.tip.kind: 'rigid'", "give 'piezo'")
+    refused(paper, {}, *words, actuator=axis, controller=vibrated)
+    stacked = axis.model_copy(update={"tip": bk.load_stack("pi_p888_91_pd200")})
+    assert paper.with_(actuator=stacked, controller=vibrated).controller == vibrated
+
+
+RAMP = {"kind": "force_ramp", "rate_n_per_s": 1e4, "travel_m": 0.1}
+IMPACTS = {"kind": "timed_impacts", "travel_m": 0.1, "target_s": 8.0}
+PULSES = {
+    "kind": "fm_vibration",
+    "pid": {"gains": {"kind": "pole_placement", "settling_time_s": 5e-4, "damping_ratio": 1.0}},
+    "vibration": {"error_full_scale_m": 1e-4, "pulse_width_s": 1e-3},
+}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"breakaway_travel_m": 0.1, "vibration": PULSES},
+            ("controller.breakaway_travel_m: 0.1", "not below breakaway.travel_m = 0.1; give less"),
+        ),
+        (
+            {"vibration": IMPACTS | {"travel_m": 2e-5}},
+            ("controller.breakaway_travel_m: 3e-05", "below vibration.travel_m = 2e-05; give less"),
+        ),
+        ({"breakaway": IMPACTS}, ("controller.breakaway.kind: 'timed_impacts'", "'force_ramp'")),
+        ({"vibration": RAMP}, ("controller.vibration.kind: 'force_ramp'", "'timed_impacts'")),
+        (
+            {"vibration": PULSES | {"vibration": PULSES["vibration"] | {"pulse_width_s": 1e-5}}},
+            ("controller.vibration.vibration.pulse_width_s: 1e-05", "two control periods"),
+        ),
+        (
+            {
+                "vibration": PULSES
+                | {
+                    "pid": PULSES["pid"]
+                    | {"anti_windup": "back_calculation", "tracking_time_s": 1e-6}
+                }
+            },
+            ("controller.vibration.pid.tracking_time_s: 1e-06", "timing.control_period_s = 1e-05"),
+        ),
+    ],
+)
+def test_two_steps_that_do_not_go_together(paper, changes, words):
+    steps = {"breakaway": RAMP, "vibration": IMPACTS, "breakaway_travel_m": 3e-5}
+    both = bk.TwoStep.model_validate(steps)
+    assert paper.with_(controller=both).controller == both
+    refused(paper, {}, *words, controller={"kind": "two_step"} | steps | changes)
+
+
+@pytest.mark.parametrize("kind", ["force", "feed_axis"])
+def test_runge_kutta_steps_no_actuator_that_moves(paper, kind):
+    method = bk.load_method("force_ramp" if kind == "force" else "steady_feed")
+    rk4 = {"timing.integrator": "rk4", "timing.steps_per_period": 20}
+    fields = {"actuator": method.actuator, "controller": method.controller}
+    refused(paper, rk4, f"'rk4' does not step an actuator of kind '{kind}'", **fields)
+
+
+@pytest.mark.parametrize("law", ["gms", "coulomb_stiction"])
+def test_runge_kutta_steps_one_bristle_only(paper, law):
+    names = ("stiction_n", "coulomb_n", "stribeck_velocity_m_per_s", "engagement_length_m")
+    joint = {"law": law, **{name: getattr(paper.joint, name) for name in names}}
+    if law == "gms":
+        own = {"stiffness_n_per_m": 3.6e7, "damping_n_s_per_m": 9e3, "attraction_n_per_s": 1e6}
+        joint |= {**own, "elements": 4}
+    rk4 = {"timing.integrator": "rk4", "timing.steps_per_period": 20}
+    refused(paper, rk4, f"'rk4' does not step joint.law = '{law}'", joint=joint)
+
+
+def test_what_is_resolved_is_a_scenario(paper):
+    """A rigid joint is loose at once, but its breakaway travel can be read again."""
+    names = ("stiction_n", "coulomb_n", "stribeck_velocity_m_per_s", "engagement_length_m")
+    rigid = bk.CoulombStiction(**{name: getattr(paper.joint, name) for name in names})
+    pushed = paper.with_(
+        joint=rigid,
+        actuator=bk.PushOnlyActuator(force_max_n=900.0),
+        controller=bk.ForceRamp(rate_n_per_s=1e4, travel_m=0.1),
+    )
+    resolved = bk.resolve(pushed)
+    assert 0.0 < resolved.limits.breakaway_travel_m < 1e-6
+    assert bk.Scenario.parse(resolved.model_dump()) == resolved
+    # 450 N at 10 kN/s; then x = 10 kN/s t^3 / (6 m) until that travel.
+    loose_s = 0.045 + (6 * resolved.limits.breakaway_travel_m / 1e4) ** (1 / 3)
+    assert bk.simulate(pushed).metrics.time_to_breakaway_s == pytest.approx(loose_s, abs=2.5e-5)
+
+
+@pytest.mark.parametrize("name", bk.preset_names("stacks"))
+def test_stacks_have_the_figures_that_they_say(name):
+    stack = bk.load_stack(name)
+    blocking_n = stack.stiffness_n_per_m * stack.stroke_m
+    held_hz = (stack.stiffness_n_per_m / stack.tip_mass_kg) ** 0.5 / (2 * 3.141592653589793)
+    ratio = stack.damping_n_s_per_m / (2 * (stack.stiffness_n_per_m * stack.tip_mass_kg) ** 0.5)
+    expected = {
+        "pi_p888_91_pd200": (3800.0, 20e3),
+        "pi_p887_91_pd200": (1900.0, 20e3),
+        "noliac_nac2023_x14_pd200": (8500.0, 16.2e3),
+    }[name]
+    assert (blocking_n, held_hz) == pytest.approx(expected, rel=5e-3)
+    assert ratio == pytest.approx(0.02, rel=0.01)
+    # Branches of a full loop: 10/27 h of the stroke apart, of 1 - 5/27 h that is left of it.
+    share = stack.hysteresis_share
+    assert 10 / 27 * share / (1 - 5 / 27 * share) == pytest.approx(0.15, rel=1e-2)

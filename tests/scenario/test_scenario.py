@@ -249,9 +249,14 @@ def test_resolving_keeps_what_is_given(paper):
 
 def test_resolving_again_changes_nothing(paper, vibrating):
     two_step = bk.TwoStep(
-        pid=paper.controller.model_dump(exclude={"kind"}) | {"anti_windup": "conditional"},
-        vibration_gains=bk.PolePlacement(settling_time_s=5.2e-4, damping_ratio=1.2),
-        vibration=PULSES,
+        breakaway=paper.controller.model_dump() | {"anti_windup": "conditional"},
+        vibration=bk.FmVibration(
+            pid=bk.PidSettings(
+                gains=bk.PolePlacement(settling_time_s=5.2e-4, damping_ratio=1.2),
+                anti_windup="conditional",
+            ),
+            vibration=PULSES,
+        ),
         breakaway_travel_m=3e-5,
     )
     for scenario in (paper, vibrating, paper.with_(controller=two_step)):

@@ -24,7 +24,7 @@ SPEED = "controller.speed_m_per_s"
 
 @pytest.fixture(scope="session")
 def parts() -> bk.PartPopulation:
-    return bk.PartPopulation(name="small", parts=PARTS, duration_s=0.2, control_period_s=1e-4)
+    return bk.PartPopulation(name="small", parts=PARTS, duration_s=0.4, control_period_s=1e-4)
 
 
 @pytest.fixture(scope="session")

@@ -52,7 +52,7 @@ def test_front(count, front):
     less = dict(list(NAMES.items())[:count])
     figure = plot_pareto("a", TRIALS, front, less, START)
     assert len(figure.axes) == count - 1
-    assert figure.axes[0].get_xlabel() == "median time to release (ms)"
+    assert figure.axes[0].get_xlabel() == "median time to release (ms); less is better"
     figure.canvas.draw()
 
 

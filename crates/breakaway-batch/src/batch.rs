@@ -340,12 +340,7 @@ impl<V: Wide, const N: usize> Lockstep<'_, V, N> {
     /// What is read and what moves at every sample is copied first, so that it is known to be this
     /// function's own, and what does not change is computed once.
     #[inline(always)]
-    fn advance_plain(
-        &self,
-        plain: &Extraction<V>,
-        moving: &mut Moving<V, N>,
-        samples: Range<u64>,
-    ) {
+    fn advance_plain(&self, plain: &Extraction<V>, moving: &mut Moving<V, N>, samples: Range<u64>) {
         let (extraction, limits) = (*plain, *self.limits);
         let Moving { mut state, mut metrics, .. } = *moving;
         let mut n = samples.start;

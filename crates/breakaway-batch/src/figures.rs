@@ -64,7 +64,7 @@ pub const FIGURES: &[Figure] = &[
     Figure {
         name: "friction_loss_j",
         needs: FORCE_AND_END,
-        value: |job, run| run.metrics.joint_work_j - stored_in_bristles_j(job, run),
+        value: |_, run| run.metrics.joint_work_j - run.metrics.end_stored_j,
     },
     Figure { name: "impacts", needs: IMPACTS, value: |_, run| run.metrics.impacts },
     Figure { name: "contact_time_s", needs: IMPACTS, value: |_, run| run.metrics.contact_s },
@@ -141,12 +141,6 @@ fn stack_loss_w(job: &Job, run: &Run) -> f64 {
         let resistance_ohm = piezo.loss_tangent / (2000.0 * PI * piezo.capacitance_f);
         resistance_ohm * run.metrics.current_square_a2_s / run.metrics.time_s
     })
-}
-
-/// ½ k_e z² in J.
-fn stored_in_bristles_j(job: &Job, run: &Run) -> f64 {
-    let z = run.metrics.end_bristle_m;
-    0.5 * job.extraction.joint.stiffness_n_per_m() * z * z
 }
 
 fn known_time(time_s: f64) -> f64 {

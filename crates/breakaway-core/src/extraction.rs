@@ -184,8 +184,8 @@ pub struct Sample<R> {
     pub next_position_m: R,
     /// v one period later, m/s.
     pub next_velocity_m_per_s: R,
-    /// z one period later, m.
-    pub next_bristle_m: R,
+    /// Energy in the bristles one period later, J.
+    pub next_stored_j: R,
 }
 
 /// What went through the part in a control period.
@@ -251,7 +251,11 @@ impl<R: Real> Extraction<R> {
             time_s: setpoint.time_s,
             period_s: self.timing.control_period_s,
             reference_m: setpoint.position_m,
-            commanded_m_per_s: self.controller.commanded_speed(setpoint, &command),
+            commanded_m_per_s: self.controller.commanded_speed(
+                &state.controller,
+                setpoint,
+                &command,
+            ),
             position_m: before.position_m,
             velocity_m_per_s: before.velocity_m_per_s,
             bristle_m: before.bristle_m,
@@ -265,7 +269,7 @@ impl<R: Real> Extraction<R> {
             stop_reason: state.watch.reason,
             next_position_m: state.plant.position_m,
             next_velocity_m_per_s: state.plant.velocity_m_per_s,
-            next_bristle_m: state.plant.bristle_m,
+            next_stored_j: self.joint.stored_energy_j(&state.plant),
         }
     }
 
@@ -306,9 +310,8 @@ impl<R: Real> Extraction<R> {
         };
         let zero = R::zero();
         let last = &state.sampling.waiting;
-        let pushing = zero.lt(last.force_n)
-            | zero.lt(last.feed_m_per_s)
-            | zero.lt(last.stack_share);
+        let pushing =
+            zero.lt(last.force_n) | zero.lt(last.feed_m_per_s) | zero.lt(last.stack_share);
         let trusted = watch.trusts(&mut state.watch, measured, pushing);
         if !self.timing.one_sample_delay {
             state.sampling.waiting = decided;

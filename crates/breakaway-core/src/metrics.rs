@@ -63,7 +63,7 @@ pub struct Groups {
     pub events: bool,
     /// `supplied_j`, `actuator_loss_j`, `charge_c`, `current_square_a2_s`, `stack_tension_n`.
     pub effort: bool,
-    /// `end_position_m`, `end_bristle_m`.
+    /// `end_position_m`, `end_stored_j`.
     pub end: bool,
 }
 
@@ -183,8 +183,8 @@ parameters! {
         pub stack_tension_n,
         /// x at the end, or when the run left its bounds, m.
         pub end_position_m,
-        /// z then, m.
-        pub end_bristle_m,
+        /// Energy in the bristles then, J.
+        pub end_stored_j,
     }
 }
 
@@ -226,7 +226,7 @@ impl<R: Real> Metrics<R> {
             current_square_a2_s: zero,
             stack_tension_n: R::constant(f64::NEG_INFINITY),
             end_position_m: zero,
-            end_bristle_m: zero,
+            end_stored_j: zero,
         }
     }
 
@@ -311,7 +311,7 @@ impl<R: Real> Metrics<R> {
         if wanted.end {
             self.stop_reason = R::select(bounded, sample.stop_reason, self.stop_reason);
             self.end_position_m = R::select(bounded, sample.next_position_m, self.end_position_m);
-            self.end_bristle_m = R::select(bounded, sample.next_bristle_m, self.end_bristle_m);
+            self.end_stored_j = R::select(bounded, sample.next_stored_j, self.end_stored_j);
         }
     }
 

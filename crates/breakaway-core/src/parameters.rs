@@ -23,6 +23,14 @@ macro_rules! parameters {
                 $name { $( $field: f(self.$field, other.$field) ),+ }
             }
         }
+
+        impl<R: $crate::real::Real> $name<R> {
+            /// Every number of `yes` where `mask` holds, of `no` elsewhere.
+            #[inline(always)]
+            pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+                $name { $( $field: R::select(mask, yes.$field, no.$field) ),+ }
+            }
+        }
     };
 }
 

@@ -4,9 +4,9 @@ use breakaway_core::actuator::{
     Actuator, Contact, FeedAxis, ForceActuator, ForceRange, PushOnly, Tip,
 };
 use breakaway_core::control::{
-    AntiWindup, Controller, ControllerState, DerivativeOf, FmVibration, ForceRamp, Gains,
-    Measurement, Pid, PulseShape, StackPulses, SteadyFeed, TimedImpacts, TwoStep, VelocityFrom,
-    VibratedFeed, VibratingPid, Watch,
+    AntiWindup, Controller, ControllerState, DerivativeOf, FirstStep, FmVibration, ForceRamp,
+    Gains, Measurement, Pid, PulseShape, SecondStep, StackPulses, SteadyFeed, TimedImpacts,
+    TwoStep, VelocityFrom, VibratedFeed, VibratingPid, Watch,
 };
 use breakaway_core::extraction::Sample;
 use breakaway_core::joint::{CoulombStiction, Joint};
@@ -71,12 +71,20 @@ const PULSED: StackPulses<f64> = StackPulses {
     stack_force_n: 2000.0,
     force_filter_s: 5e-3,
 };
+const RAMP: ForceRamp<f64> = ForceRamp { rate_n_per_s: 1e5, travel_m: TRAVEL_M };
 const RANGE: ForceRange<f64> = ForceRange { min_n: 0.0, max_n: 2000.0 };
 
 /// Every kind, limited to the actuator's range.
 fn every_kind() -> Vec<(&'static str, Controller<f64>)> {
     let back = Pid { anti_windup: AntiWindup::BackCalculation, ..PID };
     let vibration = FmVibration { shape: PulseShape::Rectangular, ..PULSES };
+    let slow = Pid { derivative_filter_s: Some(1e-3), ..back };
+    let two_step = |breakaway, vibration| {
+        Controller::TwoStep(TwoStep { breakaway, vibration, breakaway_travel_m: 2.5e-5 })
+    };
+    let (pid, ramp) = (FirstStep::Pid(PID), FirstStep::ForceRamp(RAMP));
+    let pulses = SecondStep::FmVibration(VibratingPid { pid: slow, vibration: PULSES });
+    let impacts = SecondStep::TimedImpacts(IMPACTS);
     vec![
         ("pid", Controller::Pid(PID)),
         ("pid, back calculation", Controller::Pid(back)),
@@ -85,16 +93,11 @@ fn every_kind() -> Vec<(&'static str, Controller<f64>)> {
             "fm_vibration, rectangular",
             Controller::FmVibration(VibratingPid { pid: back, vibration }),
         ),
-        (
-            "two_step",
-            Controller::TwoStep(TwoStep {
-                pid: PID,
-                vibration_gains: GAINS,
-                vibration: PULSES,
-                breakaway_travel_m: 2.5e-5,
-            }),
-        ),
-        ("force_ramp", Controller::ForceRamp(ForceRamp { rate_n_per_s: 1e5, travel_m: TRAVEL_M })),
+        ("two_step, pid and pulses", two_step(pid, pulses)),
+        ("two_step, pid and impacts", two_step(pid, impacts)),
+        ("two_step, ramp and pulses", two_step(ramp, pulses)),
+        ("two_step, ramp and impacts", two_step(ramp, impacts)),
+        ("force_ramp", Controller::ForceRamp(RAMP)),
         ("steady_feed", Controller::SteadyFeed(FEED)),
         ("timed_impacts", Controller::TimedImpacts(IMPACTS)),
         ("vibrated_feed", Controller::VibratedFeed(VibratedFeed { feed: FEED, pulses: PULSED })),
@@ -174,8 +177,13 @@ fn no_number_that_is_none_leads_out_of_the_range() {
 #[test]
 fn nothing_pushes_a_part_that_is_out() {
     let outs = [
-        Controller::ForceRamp(ForceRamp { rate_n_per_s: 1e5, travel_m: TRAVEL_M }),
+        Controller::ForceRamp(RAMP),
         Controller::TimedImpacts(IMPACTS),
+        Controller::TwoStep(TwoStep {
+            breakaway: FirstStep::ForceRamp(RAMP),
+            vibration: SecondStep::TimedImpacts(IMPACTS),
+            breakaway_travel_m: 2.5e-5,
+        }),
     ];
     for controller in outs {
         let mut state = ControllerState::at_rest(0.0);
@@ -381,10 +389,10 @@ fn a_proportional_controller_stretches_the_bristles_to_its_balance() {
 fn an_integral_breaks_a_rigid_joint_loose_on_time_and_two_steps_then_vibrate() {
     let gains = Gains { kp_n_per_m: 0.0, ki_n_per_m_s: 1e7, kd_n_s_per_m: 0.0 };
     let pid = Pid { gains, anti_windup: AntiWindup::Conditional, ..PID };
+    let vibration = FmVibration { base_fraction: 0.0, shape: PulseShape::Rectangular, ..PULSES };
     let two_step = TwoStep {
-        pid,
-        vibration_gains: gains,
-        vibration: FmVibration { base_fraction: 0.0, shape: PulseShape::Rectangular, ..PULSES },
+        breakaway: FirstStep::Pid(pid),
+        vibration: SecondStep::FmVibration(VibratingPid { pid, vibration }),
         breakaway_travel_m: 1e-5,
     };
     for controller in [Controller::Pid(pid), Controller::TwoStep(two_step)] {
@@ -409,6 +417,101 @@ fn an_integral_breaks_a_rigid_joint_loose_on_time_and_two_steps_then_vibrate() {
     let share = pushed as f64 / (samples.len() - loose - 200) as f64;
     // Pulses of 1 ms at 80 to 160 Hz: 8 to 16 % of the time.
     assert!((0.07..0.17).contains(&share), "{share}");
+}
+
+/// What is held is the amplitude, so that it shows: at the take-over it is what step 1 would
+/// command then, or, after a ramp, what was commanded last, and the one step of its own integral.
+#[test]
+fn a_vibration_takes_the_amplitude_over_without_a_bump() {
+    let gains = Gains { kp_n_per_m: 4e5, ki_n_per_m_s: 2e8, kd_n_s_per_m: 90.0 };
+    let first = Pid { anti_windup: AntiWindup::Off, ..PID };
+    let second = Pid {
+        gains,
+        derivative_of: DerivativeOf::Measurement,
+        derivative_filter_s: Some(3e-4),
+        ..first
+    };
+    let pulses = FmVibration { base_fraction: 1.0, ..PULSES };
+    let vibration = SecondStep::FmVibration(VibratingPid { pid: second, vibration: pulses });
+    let error = 2e-4;
+    let seen = |n: u32| {
+        let x = 1e-7 * f64::from(n) + 1e-5 * f64::from(n / 100);
+        Measurement { reference_rate_m_per_s: 0.02, ..measured(x + error, x) }
+    };
+    for (breakaway, alone) in [
+        (FirstStep::Pid(first), Controller::Pid(first)),
+        (FirstStep::ForceRamp(RAMP), Controller::ForceRamp(RAMP)),
+    ] {
+        let supervisor =
+            Controller::TwoStep(TwoStep { breakaway, vibration, breakaway_travel_m: 1.8e-5 });
+        let mut states = [ControllerState::at_rest(0.0); 2];
+        let mut last = 0.0;
+        for n in 0..100 {
+            last = supervisor.step(&mut states[0], &seen(n)).force_n;
+            assert_eq!(last, alone.step(&mut states[1], &seen(n)).force_n, "{n}");
+        }
+        let taken = supervisor.step(&mut states[0], &seen(100)).force_n; // and 10 um further
+        let step = |gains: &Gains<f64>| gains.ki_n_per_m_s * 1e-5 * error;
+        let expected = match breakaway {
+            FirstStep::ForceRamp(_) => last + step(&gains),
+            FirstStep::Pid(_) => {
+                let now = alone.step(&mut states[1], &seen(100)).force_n;
+                now - step(&GAINS) + step(&gains)
+            }
+        };
+        assert!((taken - expected).abs() < 1e-9 * expected.abs(), "{taken} {expected}");
+        // Neither goes back.
+        let sitting = Measurement { reference_m: 0.0, ..measured(0.0, 0.0) };
+        supervisor.step(&mut states[0], &sitting);
+        assert_eq!(states[0].vibration.vibrating, 1.0);
+    }
+}
+
+/// Impacts of step 2 are those of a controller that begins where the joint broke loose.
+#[test]
+fn timed_impacts_begin_afresh_at_the_take_over() {
+    let supervisor = Controller::TwoStep(TwoStep {
+        breakaway: FirstStep::ForceRamp(RAMP),
+        vibration: SecondStep::TimedImpacts(IMPACTS),
+        breakaway_travel_m: 1e-5,
+    });
+    let alone = Controller::TimedImpacts(IMPACTS);
+    let mut states = [ControllerState::at_rest(0.0); 2];
+    let seen = |n: u32| measured(0.0, 1e-6 * f64::from(n % 37) + 4e-8 * f64::from(n));
+    for n in 0..100 {
+        supervisor.step(&mut states[0], &measured(0.0, 1e-7 * f64::from(n)));
+    }
+    for n in 0..50_000 {
+        let seen = if n == 0 { measured(0.0, 1.1e-5) } else { seen(n) };
+        let expected = alone.step(&mut states[1], &seen);
+        assert_eq!(supervisor.step(&mut states[0], &seen), expected, "{n}");
+    }
+    assert_eq!(states[0].impacts, states[1].impacts);
+}
+
+/// The ramp alone throws the part out; impacts that follow it let it slip by less than 1 mm.
+#[test]
+fn a_force_ramp_and_then_timed_impacts_free_a_rigid_joint() {
+    let ramp = ForceRamp { rate_n_per_s: 5e3, travel_m: 5e-3 };
+    let impacts = TimedImpacts { travel_m: 5e-3, target_s: 0.5, ..IMPACTS };
+    let supervisor = TwoStep {
+        breakaway: FirstStep::ForceRamp(ramp),
+        vibration: SecondStep::TimedImpacts(impacts),
+        breakaway_travel_m: 1e-5,
+    };
+    let mut limits = paper_limits();
+    (limits.release_position_m, limits.diverged_error_m) = (5e-3, 1.0);
+    let freed = |controller| {
+        let extraction = calm(RIGID, PUSH_ONLY, controller);
+        let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
+        for _ in 0..200_000 {
+            metrics.update(Groups::ALL, &limits, &extraction.step(&mut state, Draws::none()));
+        }
+        metrics
+    };
+    let (two, one) = (freed(Controller::TwoStep(supervisor)), freed(Controller::ForceRamp(ramp)));
+    assert!(two.release_s < 1.0 && two.impacts > 40.0, "{two:?}");
+    assert!(two.largest_jump_m < 1e-3 && one.largest_jump_m > 4e-3, "{two:?} {one:?}");
 }
 
 /// A part that does not give way: the error stays, so there are f = f_min + (f_max − f_min) e / e_full

@@ -18,7 +18,11 @@ fn push(acts_on: DisturbedQuantity, force_n: f64) -> (f64, Option<f64>) {
         if n % 100 == 0 {
             draw = uniform(&mut random);
         }
-        rig.push_disturbed(force_n, 1e-5, disturbance.factors(Draws { disturbance: draw, ..Draws::none() }));
+        rig.push_disturbed(
+            force_n,
+            1e-5,
+            disturbance.factors(Draws { disturbance: draw, ..Draws::none() }),
+        );
         if rig.state.position_m > 0.1 {
             return (rig.state.position_m, Some(f64::from(n) * 1e-5));
         }

@@ -6,4 +6,12 @@ from breakaway.batch.batch import Batch
 from breakaway.batch.draw import Design, draw_columns, grid_columns
 from breakaway.batch.simulation import METRICS, run_columns, simulate_many
 
-__all__ = ["METRICS", "Batch", "Design", "draw_columns", "grid_columns", "run_columns", "simulate_many"]
+__all__ = [
+    "METRICS",
+    "Batch",
+    "Design",
+    "draw_columns",
+    "grid_columns",
+    "run_columns",
+    "simulate_many",
+]

@@ -233,4 +233,5 @@ def _marked(row: Row, key: str, factor: float = 1.0, digits: str = ".3g") -> str
     if row[key] is None:
         return "none"
     best = BEST if key in str(row["best"]).split(";") else ""
-    return f"{row[key] * factor:{digits}}{best}"
+    value = row[key] * factor
+    return f"{value:,.0f}{best}" if abs(value) >= 1000.0 else f"{value:{digits}}{best}"

@@ -30,6 +30,14 @@ NOT_STABLE = 4
 ROWS_PER_CYCLE = 100
 """Rows of a trace in a period of the loop, where a limit cycle is measured."""
 
+ROLES = {
+    "": "pid",
+    "pid.": "vibration",
+    "breakaway.": "step 1, pid",
+    "vibration.pid.": "step 2, vibration",
+}
+"""Path of a PID within its controller -> what its gains are for."""
+
 
 @dataclass(frozen=True)
 class Asked:
@@ -118,20 +126,9 @@ def design(
 
 
 def _gain_sets(scenario: Scenario) -> list[Asked]:
-    from breakaway.scenario import FmVibration, Pid, TwoStep
+    from breakaway.scenario.controller import pids
 
-    controller = scenario.controller
-    if isinstance(controller, TwoStep):
-        pid = controller.pid
-        return [
-            Asked("step 1, pid", pid.gains, pid),
-            Asked("step 2, vibration", controller.vibration_gains, pid),
-        ]
-    if isinstance(controller, FmVibration):
-        return [Asked("vibration", controller.pid.gains, controller.pid)]
-    if isinstance(controller, Pid):
-        return [Asked("pid", controller.gains, controller)]
-    return []
+    return [Asked(ROLES[path], pid.gains, pid) for path, pid in pids(scenario.controller).items()]
 
 
 def _judge(scenario: Scenario, asked: Asked) -> Judged:

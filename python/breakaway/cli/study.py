@@ -36,7 +36,10 @@ def study(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
 ) -> None:
-    """Run many simulations that answer one question: a sweep, robustness, sensitivity, comparison.
+    """Run many simulations that answer one question.
+
+    The kind of study is a sweep, robustness, sensitivity, compare, or agreement
+    of friction laws.
 
     The folder receives manifest.json first, then the runs in parts as they
     finish (Parquet), and in the end summary.json, tables (CSV), figures, and
@@ -89,6 +92,10 @@ def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
         "indices": lambda rows: _indices(rows, metrics),
         "outcomes": _outcomes,
         "differences": lambda rows: _differences(rows, metrics),
+        "conclusions": _conclusions,
+        "laws": _laws,
+        "variants": _variants,
+        "smallest": _smallest,
     }
     shown: list[Sheet | str] = []
     for name, rows in tables.items():
@@ -166,6 +173,64 @@ def _differences(rows: Sequence[Mapping[str, Any]], metrics: Sequence[str]) -> S
             str(row["pairs"]),
             *(show(name, row[key]) for key in ("difference", "difference_low", "difference_high")),
             lower,
+        )
+    return sheet
+
+
+def _conclusions(rows: Sequence[Mapping[str, Any]]) -> Sheet:
+    parts = [name for name in rows[0] if name.startswith("verdict_")]
+    words = [name.removeprefix("verdict_").replace("_", " ") for name in parts]
+    sheet = Sheet("", ["of", "than", "quantity", "goes", "verdict", *words])
+    for row in rows[:ROWS_MAX]:
+        sheet.add(
+            row["other"],
+            row["first"],
+            split_unit(row["quantity"])[0],
+            row["direction"],
+            row["verdict"],
+            *(row[name] for name in parts),
+        )
+    return sheet
+
+
+def _laws(rows: Sequence[Mapping[str, Any]]) -> Sheet:
+    columns = ["quantity", "law", "disturbance", "pairs", "difference", "from", "to", "relative"]
+    sheet = Sheet("", ["of", "than", *columns, "says"], numbers=columns[3:])
+    keys = ("difference", "difference_low", "difference_high")
+    for row in rows[:ROWS_MAX]:
+        name = row["quantity"]
+        sheet.add(
+            row["other"],
+            row["first"],
+            split_unit(name)[0],
+            row["law"],
+            row["disturbance"],
+            str(row["pairs"]),
+            *(show(name, row[key]) for key in keys),
+            "" if row["relative"] is None else f"{100 * row['relative']:+.3g} %",
+            "not shown" if row["direction"] == "undecided" else row["direction"],
+        )
+    return sheet
+
+
+def _variants(rows: Sequence[Mapping[str, Any]]) -> Sheet:
+    seen = [name for name in OUTCOMES if any(row[name] for row in rows)]
+    sheet = Sheet("", ["law", "disturbance", "variant", "runs", *seen], numbers=["runs", *seen])
+    for row in rows[:ROWS_MAX]:
+        labels = (row["law"], row["disturbance"], row["variant"], str(row["runs"]))
+        sheet.add(*labels, *(_share(row, name) for name in seen))
+    return sheet
+
+
+def _smallest(rows: Sequence[Mapping[str, Any]]) -> Sheet:
+    numbers = ["runs", "smallest: 5 %", "median", "95 %", "at lowest", "above highest"]
+    sheet = Sheet("", ["law", "disturbance", "variant", *numbers], numbers=numbers)
+    for row in rows[:ROWS_MAX]:
+        sheet.add(
+            *(row[name] for name in ("law", "disturbance", "variant")),
+            str(row["runs"]),
+            *(_level(row[name]) for name in ("p05", "median", "p95")),
+            *(str(row[name]) for name in ("at_lowest", "above_highest")),
         )
     return sheet
 

@@ -45,8 +45,8 @@ class Asked(StudyModel):
     baselines: list[str] = Field(default_factory=list)
     """Names of the methods that the others are measured against, by the best of them. Left out:
     all."""
-    runs_per_part: Annotated[int, Field(ge=1)] = 1000
-    """Parts of the population in one file."""
+    runs_per_part: Annotated[int, Field(ge=1)] = 2000
+    """Parts of the population in one file: many fill the processor's lanes, few are soon lost."""
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:

@@ -172,7 +172,9 @@ def _failing(asked: Asked, rows: Sequence[Row]) -> list[str]:
                 "" if len(by_criterion) == 1 else f" under {_listing([r['law'] for r in found])}"
             )
             kept = _range([row[f"{name}_share"] for row in found])
-            parts.append(f"{CRITERION_WORDS[name]}{where}, which stays within its limit for {kept}")
+            parts.append(
+                f"{CRITERION_WORDS[name]}{where}, within its limit for {kept} of the parts"
+            )
         said.append(f"{method} frees {gentle} gently; what fails it most is {' and '.join(parts)}")
     return said
 

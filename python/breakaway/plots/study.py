@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from breakaway.batch.batch import UNITS
+from breakaway.plots.comparison import LAW_WORDS
 from breakaway.plots.style import COLORS, house_figure, house_style, scaled
 
 Row = Mapping[str, Any]
@@ -28,6 +30,15 @@ OUTCOME_COLORS = {
 """Outcome -> its color."""
 METRICS_MAX = 3
 """Most metrics that one figure shows."""
+CONCLUSIONS_MAX = 6
+"""Most conclusions that one figure shows."""
+DIRECTIONS = {
+    "lower": (COLORS["ours"], "o", "lower"),
+    "higher": (COLORS["alternative"], "o", "higher"),
+    "same": (COLORS["axis"], "s", "the same"),
+    "undecided": (COLORS["reference"], "D", "not shown"),
+}
+"""Which way a difference goes -> its color, its marker, its words."""
 
 
 def plot_sweep(
@@ -274,6 +285,83 @@ def _difference_bars(axes: Axes, rows: Sequence[Row], metric: str, first: str) -
     axes.set_ylim(-0.7, len(rows) - 0.3)
     axes.set_xlabel(f"{_words(metric)} less that of {first}{f' ({unit})' if unit else ''}")
     axes.grid(visible=False, axis="y")
+
+
+def plot_agreement(title: str, conclusions: Sequence[Row], laws: Sequence[Row]) -> Figure:
+    """Draw what each law says of each conclusion, a panel for each conclusion.
+
+    The verdict is in red where only one law says so, and where laws contradict each other.
+
+    Parameters
+    ----------
+    title : str
+        Name of the study.
+    conclusions : sequence of mapping
+        One row for each conclusion; the first six are drawn.
+    laws : sequence of mapping
+        One row for each conclusion, law and disturbance, in the same order.
+
+    """
+    count = len(laws) // len(conclusions)
+    shown = conclusions[:CONCLUSIONS_MAX]
+    with house_style():
+        figure = house_figure(height=0.75 + len(shown) * (0.85 + 0.21 * count))
+        panels = figure.subplots(len(shown), 1, squeeze=False)[:, 0]
+        for place, (axes, conclusion) in enumerate(zip(panels, shown, strict=True)):
+            _law_bars(axes, conclusion, laws[place * count : (place + 1) * count])
+        _direction_legend(figure, laws[: len(shown) * count])
+        more = f", {len(shown)} of {len(conclusions)}" if len(conclusions) > len(shown) else ""
+        _title(figure, f"{title}: what each law says{more}")
+    return figure
+
+
+def _law_bars(axes: Axes, conclusion: Row, rows: Sequence[Row]) -> None:
+    """Draw the difference that each law shows, with its interval."""
+    quantity, first = str(conclusion["quantity"]), str(conclusion["first"])
+    relative = all(row["relative"] is not None for row in rows)
+    name = "relative" if relative else "difference"
+    keys = (f"{name}_low", name, f"{name}_high")
+    factor, unit = _factor(rows, keys, quantity)
+    if relative or quantity == "released":
+        factor, unit = 100.0, "%"
+    place = np.arange(len(rows))[::-1].astype(float)
+    low, middle, high = (_column(rows, key) * factor for key in keys)
+    for k, row in enumerate(rows):
+        color, marker, _ = DIRECTIONS[str(row["direction"])]
+        axes.hlines(place[k], low[k], high[k], color=color, linewidth=2.0)
+        axes.plot(middle[k], place[k], marker, markersize=5, color=color)
+        if not row["pairs"]:
+            where = axes.get_yaxis_transform()
+            axes.annotate("no pairs", (0.02, place[k]), xycoords=where, va="center")
+    axes.axvline(0.0, color=COLORS["text"], linewidth=0.8)
+    if not np.abs(np.nan_to_num([low, middle, high])).any():
+        axes.set_xlim(-1.0, 1.0)
+    several = len({row["disturbance"] for row in rows}) > 1
+    axes.set_yticks(place, [_law_label(row, several=several) for row in rows])
+    axes.set_ylim(-0.6, len(rows) - 0.4)
+    axes.grid(visible=False, axis="y")
+    of = "share released" if quantity == "released" else _words(quantity)
+    axes.set_xlabel(f"{of}: {conclusion['other']} less {first}{f' ({unit})' if unit else ''}")
+    verdict = str(conclusion["verdict"])
+    flagged = verdict.startswith(("only", "contradicted"))
+    color = COLORS["alarm"] if flagged else COLORS["text"]
+    words = " ".join(LAW_WORDS.get(word, word) for word in verdict.split()).replace("_", " ")
+    axes.set_title(words, fontsize=9, color=color)
+
+
+def _direction_legend(figure: Figure, rows: Sequence[Row]) -> None:
+    seen = {str(row["direction"]) for row in rows}
+    handles = [
+        Line2D([], [], color=color, marker=marker, markersize=5, label=label)
+        for name, (color, marker, label) in DIRECTIONS.items()
+        if name in seen
+    ]
+    figure.legend(handles=handles, loc="upper right", ncols=4)
+
+
+def _law_label(row: Row, *, several: bool) -> str:
+    law = LAW_WORDS[str(row["law"])]
+    return f"{law}, {str(row['disturbance']).replace('_', ' ')}" if several else law
 
 
 def _axis_and_series(rows: Sequence[Row], paths: Sequence[str]) -> tuple[str, dict[str, list[Row]]]:

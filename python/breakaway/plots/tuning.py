@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 COLUMNS = 3
 """Panels of slices side by side."""
+NOT_MET = "constraint not met"
 DECADES = 60.0
 """Largest span of a logarithmic axis that is marked at 1, 2 and 5."""
 RANKED_MIN = 5
@@ -55,16 +56,12 @@ def plot_pareto(
         figure = house_figure(height=0.9 + 3.3 * len(others))
         panels = np.atleast_1d(figure.subplots(len(others), 1))
         for axes, other in zip(panels, others, strict=True):
-            _front(
-                axes,
-                trials,
-                front,
-                (other, first),
-                start,
-                less_is_better[other],
-                staircase=len(others) == 1,
-            )
-            _mark_better(axes, less_is_better[other], less_is_better[first])
+            # No point between two of the front was reached: steps, not slopes, join them.
+            steps = "steps-post" if less_is_better[other] else "steps-pre"
+            line = steps if len(others) == 1 else None
+            _front(axes, trials, front, (other, first), start, line)
+            axes.set_xlabel(f"{axes.get_xlabel()}; {_better(less_is_better[other])}")
+            axes.set_ylabel(f"{axes.get_ylabel()}; {_better(less_is_better[first])}")
         panels[0].legend(
             loc="lower right",
             bbox_to_anchor=(1.0, 1.0),
@@ -83,10 +80,9 @@ def _front(
     front: Sequence[Row],
     names: tuple[str, str],
     start: Mapping[str, float],
-    less_x: bool,
-    *,
-    staircase: bool,
+    steps: str | None,
 ) -> None:
+    """Draw trials, front and start; steps join a front that is a line."""
     factors = [_factor(trials, name) for name in names]
 
     def places(rows: Sequence[Row], suffix: str = "") -> list[Array]:
@@ -95,44 +91,11 @@ def _front(
             for name, (factor, _) in zip(names, factors, strict=True)
         ]
 
-    feasible = [row for row in trials if row["state"] == "feasible"]
-    others = [row for row in trials if row["state"] == "infeasible"]
-    for rows, marker, label in ((feasible, "o", "trial"), (others, "x", "constraint not met")):
+    for state, marker, label in (("feasible", "o", "trial"), ("infeasible", "x", NOT_MET)):
+        rows = [row for row in trials if row["state"] == state]
         if rows:
             axes.plot(*places(rows), marker, markersize=3.5, color=COLORS["reference"], label=label)
-    trained, unseen = places(front, "_training"), places(front, "_unseen")
-    for i in range(len(front)):
-        axes.plot(
-            *([a[i], b[i]] for a, b in zip(trained, unseen, strict=True)),
-            color=COLORS["alternative"],
-            linewidth=0.8,
-            alpha=0.6,
-        )
-    axes.plot(
-        *unseen,
-        "o",
-        markersize=4,
-        mfc="white",
-        color=COLORS["alternative"],
-        label="on unseen parts",
-    )
-    style: dict[str, Any] = {
-        "marker": "o",
-        "markersize": 4.5,
-        "color": COLORS["ours"],
-        "label": "front",
-    }
-    if staircase:  # what is reached without giving up more: no point between two of the front is
-        order = np.argsort(trained[0])
-        steps = "steps-post" if less_x else "steps-pre"
-        axes.plot(*(place[order] for place in trained), drawstyle=steps, **style)
-    else:
-        axes.plot(*trained, linestyle="none", **style)
-    for row, x, y in zip(front, *trained, strict=True):
-        if row["recommended"]:
-            axes.plot(
-                x, y, "o", markersize=11, mfc="none", color=COLORS["text"], label="recommended"
-            )
+    _points(axes, front, places(front, "_training"), places(front, "_unseen"), steps)
     before = [start[name] * factor for name, (factor, _) in zip(names, factors, strict=True)]
     if np.isfinite(before).all():
         axes.plot(*before, "D", markersize=6, color=COLORS["third"], label="start")
@@ -140,18 +103,30 @@ def _front(
     axes.set_ylabel(_label(names[1], factors[1][1]))
 
 
-def _mark_better(axes: Axes, less_x: bool, less_y: bool) -> None:
-    """Say in which corner the best would be."""
-    axes.annotate(
-        "better",
-        xy=(0.015 if less_x else 0.985, 0.02 if less_y else 0.98),
-        xycoords="axes fraction",
-        ha="left" if less_x else "right",
-        va="bottom" if less_y else "top",
-        fontsize=8,
-        fontstyle="italic",
-        color=COLORS["axis"],
-    )
+def _points(
+    axes: Axes,
+    front: Sequence[Row],
+    trained: Sequence[Array],
+    unseen: Sequence[Array],
+    steps: str | None,
+) -> None:
+    """Draw each point of a front where training put it, and where unseen parts do."""
+    pale, dark = COLORS["alternative"], COLORS["ours"]
+    for i in range(len(front)):
+        ends = ([a[i], b[i]] for a, b in zip(trained, unseen, strict=True))
+        axes.plot(*ends, color=pale, linewidth=0.8, alpha=0.6)
+    axes.plot(*unseen, "o", markersize=4, mfc="white", color=pale, label="on unseen parts")
+    order = np.argsort(trained[0])
+    line: dict[str, Any] = {"drawstyle": steps} if steps else {"linestyle": "none"}
+    line |= {"marker": "o", "markersize": 4.5, "color": dark, "label": "front"}
+    axes.plot(*(place[order] for place in trained), **line)
+    for row, x, y in zip(front, *trained, strict=True):
+        if row["recommended"]:
+            axes.plot(x, y, "o", ms=11, mfc="none", color=COLORS["text"], label="recommended")
+
+
+def _better(less: bool) -> str:
+    return "less is better" if less else "more is better"
 
 
 def plot_history(title: str, trials: Sequence[Row], less_is_better: Mapping[str, bool]) -> Figure:
@@ -187,7 +162,7 @@ def _history(axes: Axes, trials: Sequence[Row], name: str, less: bool) -> None:
     feasible = (state == "feasible") & np.isfinite(value)
     for chosen, marker, label in (
         (feasible, "o", "constraints met"),
-        ((state == "infeasible") & np.isfinite(value), "x", "constraint not met"),
+        ((state == "infeasible") & np.isfinite(value), "x", NOT_MET),
     ):
         if chosen.any():
             axes.plot(

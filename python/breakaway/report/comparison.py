@@ -205,10 +205,10 @@ COLUMNS = (
     _spread("release_velocity_m_per_s", "release velocity", "m/s"),
     _spread("largest_impact_work_j", "largest impact", "J"),
     _spread("impulse_n_s", "impulse", "N s"),
+    Column("best other", "gentle parts that only one frees", (), _against),
     _single("stack_cycles_median", "stack", "cycles"),
     _single("rms_current_a_median", "RMS current", "A"),
     _single("stack_loss_w_median", "stack loss", "W"),
-    Column("best other", "gentle parts that only one frees", (), _against),
 )
 """Columns of the table; a spread's cell says the median, and the 99 % quantile below."""
 

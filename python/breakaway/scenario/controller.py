@@ -110,21 +110,6 @@ class FmVibration(Model):
     """Sets frequency, width and shape of the pulses."""
 
 
-class TwoStep(Model):
-    """The paper's control in two steps: a PID until the joint breaks loose, then vibration."""
-
-    kind: Literal["two_step"] = "two_step"
-    """The kind of controller."""
-    pid: PidSettings
-    """Step 1; its settings but for the gains also hold in step 2."""
-    vibration_gains: AnyGains
-    """Gains of step 2, taken over without a bump."""
-    vibration: FmPulses
-    """Pulses of step 2."""
-    breakaway_travel_m: Positive
-    """Travel at which the joint counts as loose, in m; above stiction_n / stiffness_n_per_m."""
-
-
 class ForceRamp(Model):
     """The naive way: a force that grows at a constant rate until the part is out.
 
@@ -169,7 +154,7 @@ class TimedImpacts(Model):
     Examples
     --------
     >>> TimedImpacts(travel_m=0.1, target_s=8.0).restart_ratio
-    0.6
+    0.7
 
     """
 
@@ -181,13 +166,13 @@ class TimedImpacts(Model):
     """When it should be out, in s: steps grow, within their limits, to keep it."""
     force_start_n: Positive = 30.0
     """Force at which the first search begins, in N."""
-    search_time_constant_s: Positive = 15e-3
+    search_time_constant_s: Positive = 60e-3
     """Time in which the force grows by e while the joint is searched for, in s."""
-    rise_time_constant_s: Positive = 2e-3
+    rise_time_constant_s: Positive = 4e-3
     """Time in which it grows by e once something has slipped, in s."""
-    slowing_m_per_s: NotNegative = 0.01
+    slowing_m_per_s: NotNegative = 0.004
     """Velocity above which the force grows slower, in m/s."""
-    holding_m_per_s: Positive = 0.03
+    holding_m_per_s: Positive = 0.01
     """Velocity above which the force does not grow, in m/s."""
     step_min_m: Positive = 30e-6
     """Smallest step, in m."""
@@ -195,9 +180,9 @@ class TimedImpacts(Model):
     """Largest step, in m."""
     travel_min_m: NotNegative = 6e-6
     """Travel below which nothing counts as a slip, in m."""
-    restart_ratio: Fraction = 0.6
+    restart_ratio: Fraction = 0.7
     """Share of the ceiling at which an impact begins."""
-    probe_ratio: NotNegative = 0.06
+    probe_ratio: NotNegative = 0.03
     """Share by which a fruitless impact raises the ceiling."""
     breakaway_share: Fraction = 0.3
     """Share by which the ceiling follows the force of a slip that was seen."""
@@ -233,6 +218,51 @@ class TimedImpacts(Model):
         return self
 
 
+class TwoStep(Model):
+    """The paper's supervisor: one controller until the joint breaks loose, then one that vibrates.
+
+    What vibrates takes over without a bump: FM vibration goes on from the force of step 1 as its
+    amplitude, timed impacts begin afresh where the part is, with a clock that starts then. There is
+    no way back.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> bk.load_scenario("paper_as_computed_vibration").controller.breakaway.kind
+    'pid'
+    >>> bk.TwoStep(
+    ...     breakaway=bk.ForceRamp(rate_n_per_s=1e4, travel_m=0.1),
+    ...     vibration=bk.TimedImpacts(travel_m=0.1, target_s=8.0),
+    ...     breakaway_travel_m=3e-5,
+    ... ).vibration.kind
+    'timed_impacts'
+
+    """
+
+    kind: Literal["two_step"] = "two_step"
+    """The kind of controller."""
+    breakaway: Annotated[Pid | ForceRamp, Field(discriminator="kind")]
+    """Step 1."""
+    vibration: Annotated[FmVibration | TimedImpacts, Field(discriminator="kind")]
+    """Step 2."""
+    breakaway_travel_m: Positive
+    """Travel at which the joint counts as loose, in m; above stiction_n / stiffness_n_per_m."""
+
+    @model_validator(mode="after")
+    def _breaks_loose_before_it_is_out(self) -> Self:
+        steps = {"breakaway": self.breakaway, "vibration": self.vibration}
+        for name, step in steps.items():
+            if not isinstance(step, ForceRamp | TimedImpacts):
+                continue
+            if self.breakaway_travel_m >= step.travel_m:
+                raise ValueError(
+                    f"breakaway_travel_m: {self.breakaway_travel_m!r} is not below "
+                    f"{name}.travel_m = {step.travel_m!r}; give less than the travel at which the "
+                    "part is out"
+                )
+        return self
+
+
 class StackPulses(Model):
     """Pulses of a piezo stack, in proportion to the mean of the measured force."""
 
@@ -260,9 +290,9 @@ class StackPulses(Model):
 class VibratedFeed(Model):
     """A constant feed, on which a piezo stack superimposes pulses in proportion to the force.
 
-    The pulses break the part loose while the mean force is only ``F_s / (1 + amplitude_ratio)``; where
-    that is below the sliding friction, a slip ends with its pulse whatever a soft axis has stored. It is
-    told nothing of the part.
+    The pulses break the part loose while the mean force is only ``F_s / (1 + amplitude_ratio)``;
+    where that is below the sliding friction, a slip ends with its pulse whatever a soft axis has
+    stored. It is told nothing of the part.
 
     Examples
     --------
@@ -292,11 +322,27 @@ Controller = Annotated[
 
 def gain_sets(controller: AnyController) -> dict[str, Gains | PolePlacement]:
     """Every set of gains of a controller, by its path within it; none where it has no PID."""
-    if isinstance(controller, Pid):
-        return {"gains": controller.gains}
-    if not isinstance(controller, FmVibration | TwoStep):
-        return {}
-    sets: dict[str, Gains | PolePlacement] = {"pid.gains": controller.pid.gains}
+    return {f"{path}gains": pid.gains for path, pid in pids(controller).items()}
+
+
+def pids(controller: AnyController) -> dict[str, PidSettings]:
+    """Every PID of a controller, by its path within it with a dot after each name.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> list(pids(bk.load_scenario("paper_as_computed_vibration").controller))
+    ['breakaway.', 'vibration.pid.']
+
+    """
     if isinstance(controller, TwoStep):
-        sets["vibration_gains"] = controller.vibration_gains
-    return sets
+        steps: dict[str, AnyController] = {
+            "breakaway.": controller.breakaway,
+            "vibration.": controller.vibration,
+        }
+        return {
+            f"{name}{path}": pid for name, step in steps.items() for path, pid in pids(step).items()
+        }
+    if isinstance(controller, FmVibration):
+        return {"pid.": controller.pid}
+    return {"": controller} if isinstance(controller, Pid) else {}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from breakaway.scenario.actuator import Actuator
 from breakaway.scenario.controller import Controller
 from breakaway.scenario.model import Model
@@ -34,6 +36,6 @@ class Method(Model):
     part."""
     reference: Reference | None = None
     """Where the part should be, for controllers that follow one. Left out: 0."""
-    knows: dict[str, Known] = {}
+    knows: dict[str, Known] = Field(default_factory=dict)
     """Numbers that are told the length of engagement of each part, by dotted path, such as
     ``controller.travel_m``; everything else is the same for all parts."""

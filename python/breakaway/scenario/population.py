@@ -30,7 +30,7 @@ QUANTITIES = (
 
 
 class PartDistributions(Model):
-    """How the parts of a population differ, in quantities that have nothing to do with each other."""
+    """How the parts of a population differ, in quantities that are independent of each other."""
 
     stiction_n: Distribution
     """F_s0, the force that breaks the joint loose at the seat, in N."""
@@ -71,7 +71,7 @@ class LawNumbers(Model):
     gms_elements: Annotated[int, Field(ge=4, le=10)] = 4
     """Generalized Maxwell-slip: number of elements."""
     gms_lag_s: Positive = 1e-3
-    """Generalized Maxwell-slip: F_s0 over the attraction, the lag of friction while sliding, in s."""
+    """Generalized Maxwell-slip: F_s0 over the attraction: how friction lags while sliding, in s."""
 
 
 class PartPopulation(Model):

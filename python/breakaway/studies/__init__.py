@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from breakaway.studies.agreement_study import (
+    AgreementStudy,
+    AgreementTable,
+    AgreementVariant,
+    SmallestTable,
+)
 from breakaway.studies.files import load_study
 from breakaway.studies.result import StudyResult, open_study
 from breakaway.studies.running import StudyProgress, run_study
@@ -18,6 +24,9 @@ from breakaway.studies.study import (
 )
 
 __all__ = [
+    "AgreementStudy",
+    "AgreementTable",
+    "AgreementVariant",
     "CompareStudy",
     "CompareTable",
     "ComparedController",
@@ -25,6 +34,7 @@ __all__ = [
     "RobustnessTable",
     "SensitivityStudy",
     "SensitivityTable",
+    "SmallestTable",
     "StudyProgress",
     "StudyResult",
     "SweepStudy",

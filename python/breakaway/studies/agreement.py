@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from itertools import combinations
-from math import ceil, log, log2
+from math import ceil, log2
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,18 @@ Passes = Callable[[int, Places], Mask]
 """Number of a step, places of levels by case and run -> which of them suffice."""
 
 
+@dataclass(frozen=True)
+class Question:
+    """One thing that is compared."""
+
+    name: str
+    """A metric, how many are released, or the smallest sufficient level."""
+    values: Mapping[Case, Array]
+    """Its value in each run of each case."""
+    relevant: float
+    """Difference up to which values are the same."""
+
+
 class AgreementPlan(Plan):
     """Every variant under every law, all with the same run numbers and the same parts."""
 
@@ -54,7 +67,8 @@ class AgreementPlan(Plan):
         self.asked = study.agreement
         self.sought = study.agreement.smallest
         self.scenarios = study.scenarios
-        order = {name: k for k, name in enumerate((*self.asked.laws, *study.disturbances))}
+        asked_first: list[str] = [*self.asked.laws, *study.disturbances]
+        order = {name: place for place, name in enumerate(asked_first)}
         self.cases = sorted(self.scenarios, key=lambda case: (order[case[0]], order[case[1]]))
         self._draw = parts_drawn(study)
         everyone = range(study.runs)
@@ -76,10 +90,12 @@ class AgreementPlan(Plan):
 
     def _runs_of_search(self) -> int:
         answers = len(self.levels) + 1
-        if self.study.certain:
-            side = min(SIDE_BY_SIDE, len(self.levels))
-            return side * ceil(log(answers) / log(side + 1))
-        return self.study.runs * ceil(log2(answers))
+        if not self.study.certain:
+            return self.study.runs * ceil(log2(answers))
+        side, steps = min(SIDE_BY_SIDE, len(self.levels)), 0
+        while answers > 1:
+            answers, steps = ceil(answers / (side + 1)), steps + 1
+        return side * steps
 
     def scenario_at(self, labels: Mapping[str, Level]) -> Scenario:
         """Give the scenario of a variant under a law."""
@@ -87,9 +103,9 @@ class AgreementPlan(Plan):
         return self.scenarios[law, acts_on, variant]
 
     def _point(self, case: Case, step: int, runs: range, levels: Array | None = None) -> Point:
-        labels: dict[str, Level] = dict(
-            zip((LAW, DISTURBANCE, VARIANT), case, strict=True)
-        ) | {STEP: step}
+        labels: dict[str, Level] = dict(zip((LAW, DISTURBANCE, VARIANT), case, strict=True)) | {
+            STEP: step
+        }
         scenario = self.scenarios[case]
         return Point(labels, scenario, runs, self._drawn(scenario, levels))
 
@@ -109,21 +125,18 @@ class AgreementPlan(Plan):
 
     def conduct(self, run: Run) -> Summary:
         """Run all variants under all laws, and say on what the laws agree."""
-        finished = dict(zip(self.cases, run(self.plain, "laws"), strict=False)) if self.plain else {}
+        finished = run(self.plain, "laws") if self.plain else []
+        plain = dict(zip(self.cases, finished, strict=True)) if finished else {}
         smallest = {} if self.sought is None else self._smallest(run)
-        laws = [
-            {"other": other, "first": first, "quantity": quantity, LAW: law, DISTURBANCE: acts_on}
-            | compare((law, acts_on, first), (law, acts_on, other))
+        groups = [
+            self._asked_everywhere(question, first, other)
             for first, other in combinations([v.name for v in self.asked.variants], 2)
-            for quantity, compare in self._questions(finished, smallest)
-            for law, acts_on in dict.fromkeys(case[:2] for case in self.cases)
+            for question in self._questions(plain, smallest)
         ]
-        count = len(self.asked.laws) * len(self.study.disturbances)
-        groups = [laws[k : k + count] for k in range(0, len(laws), count)]
         conclusions = [conclusion_of(group) for group in groups]
-        tables = {"conclusions": conclusions, "laws": laws}
-        if finished:
-            tables["variants"] = [self._variant_row(case, found) for case, found in finished.items()]
+        tables = {"conclusions": conclusions, "laws": [row for group in groups for row in group]}
+        if plain:
+            tables["variants"] = [self._variant_row(case, found) for case, found in plain.items()]
         if smallest:
             tables["smallest"] = [self._level_row(case, found) for case, found in smallest.items()]
         return Summary(
@@ -134,36 +147,37 @@ class AgreementPlan(Plan):
         )
 
     def _questions(
-        self, finished: Mapping[Case, PointRuns], smallest: Mapping[Case, Array]
-    ) -> list[tuple[str, Callable[[Case, Case], Row]]]:
-        """Give what is compared, by name, and how."""
-        confidence, certain = self.asked.confidence, self.study.certain
+        self, plain: Mapping[Case, PointRuns], smallest: Mapping[Case, Array]
+    ) -> list[Question]:
+        """Give what is compared."""
         relevant = self.asked.relevant
-        questions: list[tuple[str, Callable[[Case, Case], Row]]] = []
-
-        def released(first: Case, other: Case) -> Row:
-            shares = (_released(finished[case]) for case in (first, other))
-            return compared_shares(*shares, confidence, relevant.get(RELEASED, 0.0), certain=certain)
-
-        def metric(name: str) -> Callable[[Case, Case], Row]:
-            def compare(first: Case, other: Case) -> Row:
-                values = (_usable(finished[case], name) for case in (first, other))
-                return compared(*values, confidence, relevant.get(name, 0.0), certain=certain)
-
-            return compare
-
-        def level(first: Case, other: Case) -> Row:
-            assert self.sought is not None
-            least = max(relevant.get(SMALLEST, 0.0), self.sought.resolution * (1.0 + 1e-9))
-            values = (smallest[case] for case in (first, other))
-            return compared(*values, confidence, least, certain=certain)
-
-        if finished:
-            questions.append((RELEASED, released))
-            questions += [(name, metric(name)) for name in self.study.shown]
+        questions: list[Question] = []
+        if plain:
+            names = [RELEASED, *self.study.shown]
+            for name in names:
+                values = {case: _compared_column(found, name) for case, found in plain.items()}
+                questions.append(Question(name, values, relevant.get(name, 0.0)))
         if self.sought is not None:
-            questions.append((f"{SMALLEST} {self.sought.over}", level))
+            # A level is known to one step, and so is a difference of two.
+            least = max(relevant.get(SMALLEST, 0.0), self.sought.resolution * (1.0 + 1e-9))
+            questions.append(Question(f"{SMALLEST} {self.sought.over}", smallest, least))
         return questions
+
+    def _asked_everywhere(self, question: Question, first: str, other: str) -> list[Row]:
+        """Compare two variants under every law."""
+        compare = compared_shares if question.name == RELEASED else compared
+        names = {"other": other, "first": first, "quantity": question.name}
+        return [
+            {**names, LAW: law, DISTURBANCE: acts_on}
+            | compare(
+                question.values[law, acts_on, first],
+                question.values[law, acts_on, other],
+                self.asked.confidence,
+                question.relevant,
+                certain=self.study.certain,
+            )
+            for law, acts_on in dict.fromkeys(case[:2] for case in self.cases)
+        ]
 
     def _smallest(self, run: Run) -> dict[Case, Array]:
         """Give the smallest sufficient level of each run; one step above the highest for none."""
@@ -223,11 +237,11 @@ class AgreementPlan(Plan):
                 "there are"
             )
         notes += self._notes_of_levels(smallest)
-        if "joint_force" in self.study.disturbances and not self.study.undisturbed:
+        if self.study.jolted:
             notes.append(
                 "a disturbance of the joint force multiplies what holds a stuck joint and jolts it "
-                "at every redraw; what it flatters, disturbances = [\"joint_force\", "
-                "\"friction_level\"] shows"
+                "at every redraw, which some laws take for help; disturbances = "
+                '["joint_force", "friction_level"] shows how much hangs on that'
             )
         return notes
 
@@ -241,7 +255,7 @@ class AgreementPlan(Plan):
         below = sum(int((found <= low).sum()) for found in smallest.values())
         above = sum(int((found > high).sum()) for found in smallest.values())
         if below:
-            notes.append(f"{below} runs need no more than the lowest level {low:g}, and count as it")
+            notes.append(f"{below} runs need no more than the lowest level, {low:g}, and count so")
         if above:
             notes.append(
                 f"{above} runs need more than the highest level {high:g}, and count as one step "
@@ -335,9 +349,12 @@ def _released(found: PointRuns) -> Mask:
 
 
 def _loose(found: PointRuns) -> Mask:
-    return np.isfinite(found.column("time_to_breakaway_s"))
+    loose: Mask = np.isfinite(found.column("time_to_breakaway_s"))
+    return loose
 
 
-def _usable(found: PointRuns, metric: str) -> Array:
-    """Give a metric, not a number where the run diverged."""
-    return np.where(not_diverged(found.outcomes()), found.column(metric), np.nan)
+def _compared_column(found: PointRuns, name: str) -> Array:
+    """Give 1 for runs that were released, or a metric, not a number where the run diverged."""
+    if name == RELEASED:
+        return _released(found).astype(np.float64)
+    return np.where(not_diverged(found.outcomes()), found.column(name), np.nan)

@@ -16,6 +16,7 @@ from breakaway.scenario.model import NotNegative
 from breakaway.scenario.population import Law, LawNumbers
 from breakaway.scenario.scenario import Scenario
 from breakaway.studies.base import (
+    Changes,
     LevelsTable,
     Share,
     StudyBase,
@@ -30,6 +31,8 @@ USUAL_LAWS: tuple[Law, ...] = ("lugre", "elasto_plastic", "gms", "coulomb_sticti
 """Laws that are asked where a study names none."""
 RELEASED, SMALLEST = "released", "smallest"
 """What is compared beside metrics: how many are released, and the smallest sufficient level."""
+OWN = "variant's own"
+"""What the disturbance multiplies where variants differ in it."""
 
 _JOINTS = {model.model_fields["law"].default: model for model in get_args(AnyJoint)}
 
@@ -39,7 +42,7 @@ class AgreementVariant(StudyModel):
 
     name: Annotated[str, Field(min_length=1)]
     """A name for tables and figures."""
-    changes: dict[str, Any] = Field(default_factory=dict)
+    changes: Changes = Field(default_factory=dict)
     """What is changed in the scenario, by dotted path; all but its friction law and its seed."""
 
     @model_validator(mode="after")
@@ -104,9 +107,7 @@ class AgreementTable(StudyModel):
             if twice is not None:
                 raise ValueError(f"{name}: {twice!r} is there twice; give each once")
         if len(self.laws) < 2:
-            raise ValueError(
-                f"laws: {self.laws[0]!r} alone agrees with itself; give two or more"
-            )
+            raise ValueError(f"laws: {self.laws[0]!r} alone agrees with itself; give two or more")
         if len(self.variants) < 2:
             raise ValueError("variants: 1 is not a comparison; give two or more")
         for law in self.numbers:
@@ -166,19 +167,21 @@ class AgreementStudy(StudyBase):
         """Whether anything is compared beside the smallest sufficient level."""
         return self.agreement.smallest is None or self.metrics is not None
 
-    @property
-    def disturbances(self) -> list[ActsOn]:
-        """What the disturbance multiplies, one after the other."""
-        return self.agreement.disturbances or [self.base.disturbance.acts_on]
+    @cached_property
+    def disturbances(self) -> list[str]:
+        """What the disturbance multiplies, one after the other, or that variants differ in it."""
+        asked: list[str] = list(self.agreement.disturbances or [])
+        own = {scenario.disturbance.acts_on for scenario in self._changed.values()}
+        return asked or (list(own) if len(own) == 1 else [OWN])
 
     @cached_property
     def scenarios(self) -> dict[tuple[str, str, str], Scenario]:
         """Law, what the disturbance multiplies, and name of a variant -> its scenario."""
         return {
-            (law, acts_on, variant.name): scenario.with_({"disturbance.acts_on": acts_on})
-            for variant in self.agreement.variants
-            for law, scenario in self._under_every_law(variant)
-            for acts_on in (self.agreement.disturbances or [scenario.disturbance.acts_on])
+            (law, acts_on, name): _with_disturbance(scenario, acts_on)
+            for name, nominal in self._changed.items()
+            for law, scenario in self._under_every_law(nominal)
+            for acts_on in self.disturbances
         }
 
     @property
@@ -186,21 +189,41 @@ class AgreementStudy(StudyBase):
         """Whether nothing is drawn, so that one run shows all there is."""
         return not self.vary and not any(map(_is_drawn, self.scenarios.values()))
 
-    def _under_every_law(self, variant: AgreementVariant) -> Iterator[tuple[Law, Scenario]]:
-        where = f"agreement.variants.{variant.name}.changes"
-        scenario = changed(self.base, variant.changes, where) if variant.changes else self.base
-        try:
-            nominal = with_nominal_controller(scenario)
-        except ScenarioError as error:
-            raise StudyError(f"{where}: {error}") from None
+    @property
+    def undisturbed(self) -> bool:
+        """Whether no run of any variant is disturbed."""
+        still = all(scenario.disturbance.var == 0.0 for scenario in self.scenarios.values())
+        return still and "disturbance.var" not in self.vary
+
+    @property
+    def jolted(self) -> bool:
+        """Whether a disturbance multiplies the whole joint force in any variant."""
+        varied = "disturbance.var" in self.vary
+        found = (scenario.disturbance for scenario in self.scenarios.values())
+        return any(d.acts_on == "joint_force" and (varied or d.var > 0.0) for d in found)
+
+    @cached_property
+    def _changed(self) -> dict[str, Scenario]:
+        """Give the scenario of each variant, its controller designed for its own joint."""
+        found: dict[str, Scenario] = {}
+        for variant in self.agreement.variants:
+            where = f"agreement.variants.{variant.name}.changes"
+            scenario = changed(self.base, variant.changes, where) if variant.changes else self.base
+            try:
+                found[variant.name] = with_nominal_controller(scenario)
+            except ScenarioError as error:
+                raise StudyError(f"{where}: {error}") from None
+        return found
+
+    def _under_every_law(self, nominal: Scenario) -> Iterator[tuple[Law, Scenario]]:
         for law in self.agreement.laws:
             numbers = self.agreement.numbers.get(law, {})
             yield law, nominal.with_(joint=joint_under(law, nominal.joint, numbers))
 
     @model_validator(mode="after")
     def _does_not_contradict_itself(self) -> Self:
-        self._refuse_twins()
         self._refuse_what_is_not_fixed()
+        self._refuse_twins()
         self._refuse_runs_that_show_nothing()
         if self.agreement.smallest is not None:
             self._refuse_levels_that_are_none(self.agreement.smallest)
@@ -232,8 +255,7 @@ class AgreementStudy(StudyBase):
                     raise StudyError(
                         f"agreement.variants.{variant.name}.changes: {path} {fixed[path]}"
                     )
-        undisturbed = all(s.disturbance.var == 0.0 for s in self.scenarios.values())
-        if len(self.disturbances) > 1 and undisturbed and "disturbance.var" not in self.vary:
+        if len(self.disturbances) > 1 and self.undisturbed:
             raise StudyError(
                 "agreement.disturbances: are all the same, for disturbance.var is 0 in every "
                 "variant; give it a value, or leave disturbances out"
@@ -312,6 +334,10 @@ def joint_under(law: Law, joint: AnyJoint, numbers: Mapping[str, Any]) -> AnyJoi
         where = f"agreement.numbers.{law}."
         raise StudyError(where + str(error).replace("\n", f"\n{where}")) from None
     return under
+
+
+def _with_disturbance(scenario: Scenario, acts_on: str) -> Scenario:
+    return scenario if acts_on == OWN else scenario.with_({"disturbance.acts_on": acts_on})
 
 
 def _is_drawn(scenario: Scenario) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
 from breakaway.batch.columns import check_paths, with_nominal_controller
 from breakaway.errors import ScenarioError, StudyError
@@ -51,6 +51,21 @@ def _loaded_joint(joint: object) -> object:
     return JointFile.load(joint) if isinstance(joint, str) else joint
 
 
+def _as_written(table: dict[str, Any]) -> dict[str, Any]:
+    """Give a table as TOML has it, values before tables, so that it reads back as it was."""
+    plain = {
+        name: value.model_dump(exclude_none=True) if isinstance(value, BaseModel) else value
+        for name, value in table.items()
+    }
+    values = {name: value for name, value in plain.items() if not isinstance(value, dict)}
+    tables = {name: _as_written(value) for name, value in plain.items() if isinstance(value, dict)}
+    return values | tables
+
+
+Changes = Annotated[dict[str, Any], AfterValidator(_as_written)]
+"""What is changed in a scenario: values by dotted path, or tables."""
+
+
 def known_metrics(names: list[str], where: str = "metrics") -> list[str]:
     """Give the names back, unless one of them is no metric or is there twice.
 
@@ -87,12 +102,13 @@ class StudyBase(StudyModel):
     joint: Annotated[JointFile, BeforeValidator(_loaded_joint)] | None = None
     """A joint that was identified from a log: the path of its file (from the study's own folder).
     Its values are laid over the scenario, and its draws join what differs from part to part."""
-    changes: dict[str, Any] = Field(default_factory=dict)
+    changes: Changes = Field(default_factory=dict)
     """What is changed in the scenario, by dotted path, such as "joint.stiction_n"."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] | None = None
     """Seed of all random draws. Left out: the scenario's."""
     runs: Annotated[int, Field(ge=1, le=1_000_000_000)]
-    """Runs of each point: of a grid, a level, a controller; base samples of a sensitivity study."""
+    """Runs of each point: of a grid, a level, a controller, a variant; base samples of a
+    sensitivity study."""
     metrics: Annotated[list[str], Field(min_length=1), AfterValidator(_known_metrics)] | None = None
     """Metrics that are recorded. Left out: all; tables and figures show the main ones."""
     design: Literal["random", "sobol", "latin_hypercube"] = "random"

@@ -25,7 +25,7 @@ def load_study(path: str | Path) -> Study:
 
     Returns
     -------
-    SweepStudy, RobustnessStudy, SensitivityStudy or CompareStudy
+    SweepStudy, RobustnessStudy, SensitivityStudy, CompareStudy or AgreementStudy
 
     Raises
     ------

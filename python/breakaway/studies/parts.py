@@ -99,8 +99,9 @@ class Parts:
         columns["run_index"] = batch.run_index
         columns |= {name: [label] * len(batch) for name, label in point.labels.items()}
         columns |= {**batch.varied, **batch.metrics}
+        nowhere = np.full(len(batch), np.nan)  # what varies, but has no place in this scenario
         arrays = [
-            arrow.array(columns[field.name], type=field.type)
+            arrow.array(columns.get(field.name, nowhere), type=field.type)
             for field in self._schema
             if field.name != "outcome"
         ]

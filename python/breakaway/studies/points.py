@@ -13,8 +13,8 @@ from breakaway.batch.columns import check_values, with_nominal_controller
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.distribution import Distribution
 from breakaway.scenario.scenario import Scenario
-from breakaway.studies.levels import Level
 from breakaway.studies.base import StudyBase
+from breakaway.studies.levels import Level
 
 Columns = dict[str, NDArray[np.float64]]
 Draw = Callable[[range], Columns]

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from importlib import import_module
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -145,7 +146,8 @@ class StudyResult:
         found = table.to_pylist()[0]
         plan = plan_of(self.study)
         scenario = with_nominal_controller(plan.scenario_at({name: found[name] for name in labels}))
-        scenario = at_run(scenario, {path: np.array([found[path]]) for path in varied}, 0)
+        placed = {path: np.array([found[path]]) for path in varied if isfinite(found[path])}
+        scenario = at_run(scenario, placed, 0)
         if trace_every is not None:
             scenario = scenario.with_({"trace.every_samples": trace_every})
         return simulate(scenario, run_index=run_index)

@@ -12,6 +12,8 @@ import tomli_w
 from breakaway._core import __version__
 from breakaway.errors import OutputError, StudyError
 from breakaway.output import output_folder, write_atomically
+from breakaway.studies.agreement import AgreementPlan
+from breakaway.studies.agreement_study import AgreementStudy
 from breakaway.studies.compare import ComparePlan
 from breakaway.studies.folder import SUMMARY, as_csv, as_json, manifest_of, prepared
 from breakaway.studies.parts import Parts, Piece, label_types, laid_out
@@ -62,7 +64,7 @@ def run_study(
 
     Parameters
     ----------
-    study : SweepStudy, RobustnessStudy, SensitivityStudy or CompareStudy
+    study : SweepStudy, RobustnessStudy, SensitivityStudy, CompareStudy or AgreementStudy
         What is asked.
     out : str or Path
         The folder; made if it is missing.
@@ -136,6 +138,8 @@ def plan_of(study: Study) -> Plan:
             return SensitivityPlan(study)
         case CompareStudy():
             return ComparePlan(study)
+        case AgreementStudy():
+            return AgreementPlan(study)
     raise StudyError(f"study: {type(study).__name__} is none; load one with load_study")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -11,7 +11,7 @@ from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.distribution import Samples
 from breakaway.scenario.scenario import Scenario
 from breakaway.studies.agreement_study import AgreementStudy
-from breakaway.studies.base import LevelsTable, Share, StudyBase, changed, loaded, percent
+from breakaway.studies.base import Changes, LevelsTable, Share, StudyBase, changed, loaded, percent
 from breakaway.studies.base import StudyModel as StudyModel
 from breakaway.studies.levels import Level, grid_levels
 from breakaway.studies.statistics import runs_needed
@@ -226,7 +226,7 @@ class ComparedController(StudyModel):
     scenario: Annotated[Scenario, BeforeValidator(loaded)] | None = None
     """A scenario whose controller and actuator are taken; gains that it leaves open are designed
     for the study's scenario. Left out: those of the study's scenario."""
-    changes: dict[str, Any] = Field(default_factory=dict)
+    changes: Changes = Field(default_factory=dict)
     """What is changed in the controller, the actuator, the reference or the timing."""
 
     @model_validator(mode="after")

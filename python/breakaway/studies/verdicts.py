@@ -86,12 +86,7 @@ def _interval(name: str, values: Array, confidence: float, *, certain: bool) -> 
 
 
 def compared_shares(
-    before: NDArray[np.bool_],
-    after: NDArray[np.bool_],
-    confidence: float,
-    relevant: float,
-    *,
-    certain: bool,
+    before: Array, after: Array, confidence: float, relevant: float, *, certain: bool
 ) -> Row:
     """Give what pairs show of the difference of two shares.
 
@@ -102,7 +97,7 @@ def compared_shares(
     Parameters
     ----------
     before, after : numpy.ndarray
-        Whether it happened in each run, the same runs in both.
+        1 for each run in which it happened, else 0, the same runs in both.
     confidence : float
         Of the interval.
     relevant : float
@@ -113,15 +108,14 @@ def compared_shares(
     Examples
     --------
     >>> import numpy as np
-    >>> none, all_ = np.zeros(8, dtype=bool), np.ones(8, dtype=bool)
-    >>> row = compared_shares(none, all_, 0.95, 0.0, certain=False)
+    >>> row = compared_shares(np.zeros(8), np.ones(8), 0.95, 0.0, certain=False)
     >>> row["difference"], round(row["difference_low"], 2), row["direction"]
     (1.0, 0.26, 'higher')
 
     """
-    runs, gained = len(before), int((after & ~before).sum())
-    differing = gained + int((before & ~after).sum())
-    difference = float(after.mean() - before.mean())
+    runs, gained = len(before), int((after > before).sum())
+    differing = int((after != before).sum())
+    difference = (2 * gained - differing) / runs
     low = high = difference
     if not certain and differing:
         share = differing / runs

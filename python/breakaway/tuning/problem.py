@@ -178,7 +178,7 @@ class Tuning(StudyModel):
     """Parts that are tuned on: numbers 0 to training_runs - 1."""
     test_runs: PartRange = PartRange(first=TEST_FIRST, runs=TEST_RUNS)
     """Parts that the tuned method is scored on and that tuning never sees."""
-    trials: Annotated[int, Field(ge=1, le=100_000)] = 100
+    trials: Annotated[int, Field(ge=1, le=10_000)] = 100
     """How many methods are tried."""
     sampler_seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     """Seed of the choice of methods."""

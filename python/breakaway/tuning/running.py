@@ -134,7 +134,7 @@ def tune(
 
 
 def _check_counts(trials: int | None, threads: int | None) -> None:
-    for name, value, high in (("trials", trials, 100_000), ("threads", threads, 4096)):
+    for name, value, high in (("trials", trials, 10_000), ("threads", threads, 4096)):
         if value is not None and (
             isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= high
         ):

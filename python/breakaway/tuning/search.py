@@ -21,11 +21,12 @@ STARTUP_MIN = 10
 class Search:
     """Proposes numbers of a method, and learns from what became of them.
 
-    The sampler is TPE, multivariate, for one objective as for several: for tens to hundreds of
-    trials of a handful of numbers it needs fewer of them than NSGA-II, whose first generations
-    are random draws, and one sampler means one way to go on. It lives in memory; since what
-    it proposes depends on its seed and on what it was told alone, telling it again what is on disk
-    brings it back to the bit.
+    The sampler is TPE: multivariate for one objective, number by number for several. With two
+    objectives, twelve numbers of timed impacts, 40 and 80 trials and three seeds, the latter's
+    fronts had the largest hypervolume in every case, before the multivariate one and NSGA-II. The
+    first generations of that are random draws, and it did not do better than drawing all. It
+    lives in memory; since what it proposes depends on its seed and on what it was told alone,
+    telling it again what is on disk brings it back to the bit.
 
     Raises
     ------
@@ -41,7 +42,7 @@ class Search:
         with self._quiet():
             sampler = self._optuna.samplers.TPESampler(
                 seed=tuning.sampler_seed,
-                multivariate=True,
+                multivariate=len(tuning.objectives) == 1,
                 constant_liar=False,
                 n_startup_trials=max(STARTUP_MIN, 2 * len(tuning.tune)),
             )

@@ -17,8 +17,8 @@ use core::arch::x86_64::{
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use breakaway_core::Real;
-use breakaway_core::real::Block;
 use breakaway_core::exp2::exp2_parts_in_double;
+use breakaway_core::real::Block;
 
 use super::Wide;
 

@@ -29,10 +29,22 @@ pub struct LaneMask<M>([M; 4]);
 macro_rules! on_each {
     (|$i:ident| $value:expr) => {
         [
-            { const $i: usize = 0; $value },
-            { const $i: usize = 1; $value },
-            { const $i: usize = 2; $value },
-            { const $i: usize = 3; $value },
+            {
+                const $i: usize = 0;
+                $value
+            },
+            {
+                const $i: usize = 1;
+                $value
+            },
+            {
+                const $i: usize = 2;
+                $value
+            },
+            {
+                const $i: usize = 3;
+                $value
+            },
         ]
     };
 }

@@ -19,7 +19,7 @@ pub use force_ramp::ForceRamp;
 pub use pid::{AntiWindup, DerivativeOf, Gains, Pid, PidState, VelocityFrom};
 pub use steady_feed::SteadyFeed;
 pub use timed_impacts::{ImpactNumbers, TimedImpacts, TimedImpactsState};
-pub use two_step::TwoStep;
+pub use two_step::{FirstStep, SecondStep, TwoStep};
 pub use vibrated_feed::{StackPulses, VibratedFeed, VibratedFeedState};
 pub use watch::{Watch, WatchState};
 
@@ -62,6 +62,8 @@ parameters! {
         pub integral_n,
         /// The filtered derivative of the PID, m/s.
         pub derivative_m_per_s,
+        /// The same of the PID that sets the amplitude of step 2, sensed from the start, m/s.
+        pub vibration_derivative_m_per_s,
         /// The last measured position, m.
         pub previous_position_m,
         /// The phase of the vibration in cycles, 0 to 1.
@@ -94,6 +96,7 @@ impl<R: Real> ControllerState<R> {
             vibration: VibrationState {
                 integral_n: zero,
                 derivative_m_per_s: zero,
+                vibration_derivative_m_per_s: zero,
                 previous_position_m: position_m,
                 phase_cycles: zero,
                 since_pulse_s: zero,
@@ -132,6 +135,19 @@ impl<R: Real> VibrationState<R> {
         self.previous_position_m = pid.previous_position_m;
     }
 
+    /// The PID of step 2.
+    #[inline(always)]
+    fn vibration_pid(&self) -> PidState<R> {
+        PidState { derivative_m_per_s: self.vibration_derivative_m_per_s, ..self.pid() }
+    }
+
+    /// What the PID of step 2 moves when it senses.
+    #[inline(always)]
+    fn set_sensed(&mut self, pid: &PidState<R>) {
+        self.vibration_derivative_m_per_s = pid.derivative_m_per_s;
+        self.previous_position_m = pid.previous_position_m;
+    }
+
     #[inline(always)]
     fn pulses(&self) -> FmVibrationState<R> {
         FmVibrationState { phase_cycles: self.phase_cycles, since_pulse_s: self.since_pulse_s }
@@ -154,6 +170,13 @@ pub struct VibratingPid<R> {
     pub vibration: FmVibration<R>,
 }
 
+impl<R: Real> VibratingPid<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> VibratingPid<S> {
+        VibratingPid { pid: self.pid.map(f), vibration: self.vibration.map(f) }
+    }
+}
+
 /// A controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize))]
@@ -163,7 +186,7 @@ pub enum Controller<R> {
     Pid(Pid<R>),
     /// Vibration from the first sample on.
     FmVibration(VibratingPid<R>),
-    /// A continuous force until breakaway, then vibration.
+    /// One controller until breakaway, then another that vibrates.
     TwoStep(TwoStep<R>),
     /// A force that grows until the part is out.
     ForceRamp(ForceRamp<R>),
@@ -180,10 +203,7 @@ impl<R: Real> Controller<R> {
     pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Controller<S> {
         match self {
             Self::Pid(pid) => Controller::Pid(pid.map(f)),
-            Self::FmVibration(c) => Controller::FmVibration(VibratingPid {
-                pid: c.pid.map(f),
-                vibration: c.vibration.map(f),
-            }),
+            Self::FmVibration(c) => Controller::FmVibration(c.map(f)),
             Self::TwoStep(c) => Controller::TwoStep(c.map(f)),
             Self::ForceRamp(c) => Controller::ForceRamp(c.map(f)),
             Self::SteadyFeed(c) => Controller::SteadyFeed(c.map(f)),
@@ -211,18 +231,25 @@ impl<R: Real> Controller<R> {
                 state.vibration.set_pulses(pulses);
                 Command::force(force)
             }
-            Self::TwoStep(c) => Command::force(c.step(&mut state.vibration, measured)),
+            Self::TwoStep(c) => Command::force(c.step(state, measured)),
             Self::ForceRamp(c) => c.step(&mut state.vibration.ramp_n, measured),
             Self::SteadyFeed(c) => c.step(&mut state.feed.elapsed_s, measured.period_s),
             Self::TimedImpacts(c) => c.step(&mut state.impacts, measured),
             Self::VibratedFeed(c) => c.step(&mut state.feed, measured),
         }
     }
-    /// The speed in m/s that the part is meant to have: what is faster is a jump.
+
+    /// The speed in m/s that the part is meant to have after a step: what is faster is a jump.
     #[inline(always)]
-    pub fn commanded_speed(&self, setpoint: &Setpoint<R>, command: &Command<R>) -> R {
+    pub fn commanded_speed(
+        &self,
+        state: &ControllerState<R>,
+        setpoint: &Setpoint<R>,
+        command: &Command<R>,
+    ) -> R {
         match self {
-            Self::Pid(_) | Self::FmVibration(_) | Self::TwoStep(_) => setpoint.rate_m_per_s,
+            Self::Pid(_) | Self::FmVibration(_) => setpoint.rate_m_per_s,
+            Self::TwoStep(c) => c.commanded_speed(&state.vibration, setpoint),
             Self::SteadyFeed(_) | Self::VibratedFeed(_) => command.feed_m_per_s,
             Self::ForceRamp(_) | Self::TimedImpacts(_) => R::zero(),
         }

@@ -56,7 +56,7 @@ pub enum AntiWindup {
 /// ```
 ///
 /// The integral is kept as a force, so a change of `ki` is bumpless by itself;
-/// [`Pid::take_over`] makes a change of all gains bumpless. `PidState` is what moves.
+/// [`Pid::integral_after`] makes a change of all gains bumpless. `PidState` is what moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Pid<R> {
@@ -89,11 +89,7 @@ impl<R: Real> PidState<R> {
     /// Before the first sample, with the part at `position_m`.
     pub fn at_rest(position_m: R) -> Self {
         let zero = R::zero();
-        Self {
-            integral_n: zero,
-            derivative_m_per_s: zero,
-            previous_position_m: position_m,
-        }
+        Self { integral_n: zero, derivative_m_per_s: zero, previous_position_m: position_m }
     }
 }
 
@@ -216,18 +212,36 @@ impl<R: Real> Pid<R> {
         }
     }
 
-    /// Moves the integral so that changing gains `from` to `to` leaves the output where it is.
+    /// The integral in N with which this PID goes on from another with the gains `from` and the
+    /// state `last`. Both have sensed the sample; neither has moved its integral.
+    ///
+    /// ```text
+    /// I = I_from + (kp_from − kp) e + (kd_from − kd) d_from + kd (d_from − d)
+    /// ```
+    ///
+    /// In this form the last term is zero to the bit where both derivatives are the same.
     #[inline(always)]
-    pub fn take_over(
+    pub fn integral_after(
         &self,
         from: &Gains<R>,
-        to: &Gains<R>,
-        state: &mut PidState<R>,
+        last: &PidState<R>,
+        sensed: &PidState<R>,
         measured: &Measurement<R>,
-    ) {
+    ) -> R {
+        let (to, d) = (&self.gains, last.derivative_m_per_s);
         let bump = (from.kp_n_per_m - to.kp_n_per_m) * measured.error_m()
-            + (from.kd_n_s_per_m - to.kd_n_s_per_m) * state.derivative_m_per_s;
-        state.integral_n = state.integral_n + bump;
+            + (from.kd_n_s_per_m - to.kd_n_s_per_m) * d
+            + to.kd_n_s_per_m * (d - sensed.derivative_m_per_s);
+        last.integral_n + bump
+    }
+
+    /// The integral in N with which this PID goes on from a force: F − kp e − kd d, with the
+    /// derivative as sensed.
+    #[inline(always)]
+    pub fn integral_from(&self, force_n: R, sensed: &PidState<R>, measured: &Measurement<R>) -> R {
+        force_n
+            - self.gains.kp_n_per_m * measured.error_m()
+            - self.gains.kd_n_s_per_m * sensed.derivative_m_per_s
     }
 }
 
@@ -326,9 +340,17 @@ mod tests {
         let new = Gains { kp_n_per_m: 3e3, ki_n_per_m_s: 0.0, kd_n_s_per_m: 400.0 };
         let (mut state, measured) = (at_rest(), sample(0.002, 0.0));
         let before = controller.step(&mut state, &measured);
-        controller.take_over(&controller.gains, &new, &mut state, &measured);
-        let filtered = controller.sense(&mut state, &measured);
-        let after = controller.output(&new, &filtered, &mut state, &measured);
-        assert!((after - before).abs() < 1e-12);
+        let next = Pid { gains: new, derivative_filter_s: Some(5e-3), ..controller };
+        let mut sensed = at_rest();
+        let filtered = next.sense(&mut sensed, &measured);
+        assert!(sensed.derivative_m_per_s < 0.5 * state.derivative_m_per_s);
+        for integral_n in [
+            next.integral_after(&controller.gains, &state, &sensed, &measured),
+            next.integral_from(before, &sensed, &measured),
+        ] {
+            let mut taken_over = PidState { integral_n, ..sensed };
+            let after = next.output(&new, &filtered, &mut taken_over, &measured);
+            assert!((after - before).abs() < 1e-12);
+        }
     }
 }

@@ -37,7 +37,7 @@ parameters! {
     /// force of that impact as modeled, a lag behind the command.
     ///
     /// v̂ is the largest slope of least squares over 3, 5 and 8 positions, each less `noise_margin` of its
-    /// deviation from noise. The lead κ adapts: a slip beyond Δ multiplies it by 1.15, one short of
+    /// deviation from noise, once x has left x₀ by more than the joint's recoil: before, it only stretches. The lead κ adapts: a slip beyond Δ multiplies it by 1.15, one short of
     /// Δ by 0.95. Δ is what has to be traveled in each cycle to be out at t_end, plus the recoil of
     /// the joint, within its limits. The part counts as free once the mean of three positions is
     /// `free_margin` beyond l.
@@ -60,7 +60,7 @@ parameters! {
         pub step_min_m,
         /// Largest Δ in m.
         pub step_max_m,
-        /// Travel in m below which nothing counts as a slip.
+        /// Travel in m beyond the recoil below which nothing counts as a slip.
         pub travel_min_m,
         /// Share of C at which a rise begins.
         pub restart_ratio,
@@ -173,6 +173,16 @@ impl<R: Real> TimedImpactsState<R> {
         Self { numbers, window_m: [zero; WINDOW] }
     }
 
+    /// `yes` where `mask` holds, `no` elsewhere.
+    #[inline(always)]
+    pub(super) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        let mut window_m = yes.window_m;
+        for (chosen, &other) in window_m.iter_mut().zip(&no.window_m) {
+            *chosen = R::select(mask, *chosen, other);
+        }
+        Self { numbers: ImpactNumbers::select(mask, &yes.numbers, &no.numbers), window_m }
+    }
+
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TimedImpactsState<S> {
         TimedImpactsState {
@@ -197,14 +207,12 @@ const NEW_SHARE: f64 = 0.2;
 impl<R: Real> TimedImpacts<R> {
     /// The command at a sample.
     #[inline(always)]
-    pub fn step(
-        &self,
-        state: &mut TimedImpactsState<R>,
-        measured: &Measurement<R>,
-    ) -> Command<R> {
+    pub fn step(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) -> Command<R> {
         self.look(state, measured);
-        let v = self.velocity(&state.window_m, measured.period_s);
+        let seen = self.velocity(&state.window_m, measured.period_s);
         let n = &mut state.numbers;
+        let stretched = n.start_m + n.recoil_m + self.travel_min_m;
+        let v = R::select(stretched.lt(measured.position_m), seen, R::zero());
         let rising = !n.coasting.is_set() & !n.free.is_set();
         let known = R::zero().lt(n.ceiling_n);
         let spent = known & n.ceiling_n.le(n.force_n) & v.lt(self.slowing_m_per_s);
@@ -263,7 +271,7 @@ impl<R: Real> TimedImpacts<R> {
     #[inline(always)]
     fn slips(&self, n: &ImpactNumbers<R>, x: R, v: R) -> R::Mask {
         let travel = x - n.start_m;
-        n.step_m.le(n.lead_s.mul_add(v, travel)) & self.travel_min_m.lt(travel)
+        n.step_m.le(n.lead_s.mul_add(v, travel)) & (n.recoil_m + self.travel_min_m).lt(travel)
     }
 
     #[inline(always)]

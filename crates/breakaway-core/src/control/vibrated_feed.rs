@@ -73,11 +73,7 @@ impl<R: Real> VibratedFeed<R> {
 
     /// The command at a sample.
     #[inline(always)]
-    pub fn step(
-        &self,
-        state: &mut VibratedFeedState<R>,
-        measured: &Measurement<R>,
-    ) -> Command<R> {
+    pub fn step(&self, state: &mut VibratedFeedState<R>, measured: &Measurement<R>) -> Command<R> {
         let (zero, one, period) = (R::zero(), R::one(), measured.period_s);
         let p = &self.pulses;
         let new = period / (p.force_filter_s + period);

@@ -4,9 +4,9 @@
 use breakaway_batch::draws::{Stream, noise, uniform};
 use breakaway_core::actuator::{Actuator, Contact, FeedAxis, ForceActuator, Piezo, PushOnly, Tip};
 use breakaway_core::control::{
-    AntiWindup, Controller, DerivativeOf, FmVibration, ForceRamp, Gains, Pid, PulseShape,
-    StackPulses, SteadyFeed, TimedImpacts, TwoStep, VelocityFrom, VibratedFeed, VibratingPid,
-    Watch,
+    AntiWindup, Controller, DerivativeOf, FirstStep, FmVibration, ForceRamp, Gains, Pid,
+    PulseShape, SecondStep, StackPulses, SteadyFeed, TimedImpacts, TwoStep, VelocityFrom,
+    VibratedFeed, VibratingPid, Watch,
 };
 use breakaway_core::disturbance::{Disturbance, DisturbedQuantity, DrawLaw};
 use breakaway_core::extraction::{Part, Timing};
@@ -102,12 +102,17 @@ fn controllers() -> Vec<Controller<f64>> {
     for (i, shape) in shapes.into_iter().enumerate() {
         let vibration = FmVibration { shape, ..PULSES };
         controllers.push(Controller::FmVibration(VibratingPid { pid: pids[i], vibration }));
-        controllers.push(Controller::TwoStep(TwoStep {
-            pid: pids[5 - i],
-            vibration_gains: Gains { kp_n_per_m: 3e6, ki_n_per_m_s: 5e8, kd_n_s_per_m: 700.0 },
-            vibration,
-            breakaway_travel_m: 1e-4,
-        }));
+        let gains = Gains { kp_n_per_m: 3e6, ki_n_per_m_s: 5e8, kd_n_s_per_m: 700.0 };
+        let pid = Pid { gains, ..pids[4 - i] };
+        let ramp = FirstStep::ForceRamp(ForceRamp { rate_n_per_s: 4e5, travel_m: LENGTH_M });
+        let pulses = SecondStep::FmVibration(VibratingPid { pid, vibration });
+        let (breakaway, vibration) = match i {
+            0 => (FirstStep::Pid(pids[5]), pulses),
+            1 => (ramp, pulses),
+            _ => (ramp, SecondStep::TimedImpacts(IMPACTS)),
+        };
+        let breakaway_travel_m = 1e-4;
+        controllers.push(Controller::TwoStep(TwoStep { breakaway, vibration, breakaway_travel_m }));
     }
     controllers
 }
@@ -263,32 +268,30 @@ const WATCH: Watch<f64> = Watch { jump_max_m: 1e-4, frozen_max_s: f64::INFINITY 
 const NERVOUS: Watch<f64> = Watch { jump_max_m: 6e-6, frozen_max_s: 1e-3 };
 
 /// Impacts as fast as these parts.
-fn impacts() -> Controller<f64> {
-    Controller::TimedImpacts(TimedImpacts {
-        travel_m: LENGTH_M,
-        target_s: 4e-3,
-        force_start_n: 300.0,
-        search_time_constant_s: 5e-4,
-        rise_time_constant_s: 3e-4,
-        slowing_m_per_s: 0.2,
-        holding_m_per_s: 0.6,
-        step_min_m: 2e-4,
-        step_max_m: 9e-4,
-        travel_min_m: 1.2e-4,
-        restart_ratio: 0.6,
-        probe_ratio: 0.06,
-        breakaway_share: 0.3,
-        coast_min_s: 1e-4,
-        settled_m: 1e-5,
-        lead_start_s: 1e-4,
-        lead_min_s: 1e-5,
-        lead_max_s: 1e-3,
-        noise_rms_m: 1e-8,
-        noise_margin: 2.0,
-        free_margin_m: 3e-6,
-        actuator_lag_s: 4e-5,
-    })
-}
+const IMPACTS: TimedImpacts<f64> = TimedImpacts {
+    travel_m: LENGTH_M,
+    target_s: 4e-3,
+    force_start_n: 300.0,
+    search_time_constant_s: 5e-4,
+    rise_time_constant_s: 3e-4,
+    slowing_m_per_s: 0.2,
+    holding_m_per_s: 0.6,
+    step_min_m: 2e-4,
+    step_max_m: 9e-4,
+    travel_min_m: 1.2e-4,
+    restart_ratio: 0.6,
+    probe_ratio: 0.06,
+    breakaway_share: 0.3,
+    coast_min_s: 1e-4,
+    settled_m: 1e-5,
+    lead_start_s: 1e-4,
+    lead_min_s: 1e-5,
+    lead_max_s: 1e-3,
+    noise_rms_m: 1e-8,
+    noise_margin: 2.0,
+    free_margin_m: 3e-6,
+    actuator_lag_s: 4e-5,
+};
 
 /// What can push, with what may push it, what it sees and who watches.
 type Pushed = (Actuator<f64>, Controller<f64>, Option<Sensors<f64>>, Option<Watch<f64>>);
@@ -315,8 +318,8 @@ fn pushed() -> [Pushed; PUSHED] {
         (FORCE, pid, None, None),
         (FORCE, pulsed, seen, None),
         (FORCE, ramp, seen, watch),
-        (FORCE, impacts(), None, None),
-        (push_only, impacts(), seen, watch),
+        (FORCE, Controller::TimedImpacts(IMPACTS), None, None),
+        (push_only, Controller::TimedImpacts(IMPACTS), seen, watch),
         (Actuator::Ideal, ramp, None, watch),
         (Actuator::Ideal, pid, seen, watch),
         (Actuator::FeedAxis(AXIS), feed, None, None),
