@@ -16,12 +16,6 @@ macro_rules! parameters {
             pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> $name<S> {
                 $name { $( $field: f(stringify!($field), self.$field) ),+ }
             }
-
-            /// Applies `f` to every number and its counterpart in `other`.
-            #[inline(always)]
-            pub fn zip<S: Copy, T>(&self, other: &$name<S>, f: impl Fn(R, S) -> T) -> $name<T> {
-                $name { $( $field: f(self.$field, other.$field) ),+ }
-            }
         }
 
         impl<R: $crate::real::Real> $name<R> {

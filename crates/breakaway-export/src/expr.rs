@@ -205,7 +205,7 @@ impl Recorder {
 ///     let loop_ = paper_as_computed().map(&mut |_, value| recorder.constant(value));
 ///     let mut state =
 ///         ExtractionState::at_rest().map(&mut |name, _: f64| recorder.field("state", name));
-///     let draws = Draws { disturbance: recorder.input("disturbance") };
+///     let draws = Draws { disturbance: recorder.input("disturbance"), ..Draws::none() };
 ///     loop_.step(&mut state, draws);
 ///     state.map(&mut |name, value| recorder.output(name, value));
 /// });

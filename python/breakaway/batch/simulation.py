@@ -124,7 +124,7 @@ def run_columns(
     tell: Callable[[int], None] | None = None,
     instructions: str | None = None,
 ) -> Batch:
-    """Run any runs of a scenario whose controller is designed, with values of their own; unchecked."""
+    """Run any runs of a scenario whose controller is designed, each with its values; unchecked."""
     shared, varied = core_columns(nominal, columns)
     for column in (run_index, *columns.values()):
         column.setflags(write=False)

@@ -7,7 +7,6 @@ from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import root
 
 from breakaway.design.describing_function import (
     POINTS,
@@ -262,6 +261,8 @@ class Oscillator:
             missing = _impedance(self.pid, self.mass_kg, np.asarray(orders * w)) * parts + forces
             missing = missing / (self.mass_kg * w * scale)
             return np.column_stack([missing.real, missing.imag]).ravel()
+
+        from scipy.optimize import root
 
         start = np.zeros(2 * harmonics)
         start[:2] = 1.0

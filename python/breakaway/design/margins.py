@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from breakaway.errors import ScenarioError
 
@@ -271,6 +270,8 @@ def _crossings(response: Response, w: Array, of: Callable[[ComplexArray], Array]
     def at(frequency: float) -> float:
         return float(of(response(np.array([frequency])))[0])
 
+    from scipy.optimize import brentq
+
     return np.array([brentq(at, w[i], w[i + 1], xtol=1e-300, rtol=1e-13) for i in found])
 
 
@@ -294,6 +295,8 @@ def _modulus(response: Response, w: Array) -> tuple[float, float]:
     values = np.abs(1.0 + response(w))
     best = int(np.argmin(values))
     low, high = w[max(best - 1, 0)], w[min(best + 1, len(w) - 1)]
+    from scipy.optimize import minimize_scalar
+
     found = minimize_scalar(
         distance, bounds=(low, high), method="bounded", options={"xatol": 1e-9 * low}
     )

@@ -303,7 +303,7 @@ impl<R: Real> TimedImpacts<R> {
         n.mean_sum_m = R::select(full, zero, n.mean_sum_m);
         let rests = full & agrees & self.coast_min_s.le(n.coasted_s);
         let next = self.next_cycle(n);
-        *n = next.zip(n, |next, now| R::select(rests, next, now));
+        *n = ImpactNumbers::select(rests, &next, n);
     }
 
     /// The cycle after this one, from where the part rests.

@@ -104,14 +104,14 @@ fn controllers() -> Vec<Controller<f64>> {
         controllers.push(Controller::FmVibration(VibratingPid { pid: pids[i], vibration }));
         let gains = Gains { kp_n_per_m: 3e6, ki_n_per_m_s: 5e8, kd_n_s_per_m: 700.0 };
         let pid = Pid { gains, ..pids[4 - i] };
-        let ramp = FirstStep::ForceRamp(ForceRamp { rate_n_per_s: 4e5, travel_m: LENGTH_M });
+        let ramp = FirstStep::ForceRamp(ForceRamp { rate_n_per_s: 1.5e6, travel_m: LENGTH_M });
         let pulses = SecondStep::FmVibration(VibratingPid { pid, vibration });
         let (breakaway, vibration) = match i {
             0 => (FirstStep::Pid(pids[5]), pulses),
             1 => (ramp, pulses),
             _ => (ramp, SecondStep::TimedImpacts(IMPACTS)),
         };
-        let breakaway_travel_m = 1e-4;
+        let breakaway_travel_m = 2e-4;
         controllers.push(Controller::TwoStep(TwoStep { breakaway, vibration, breakaway_travel_m }));
     }
     controllers
