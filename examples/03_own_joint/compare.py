@@ -4,13 +4,20 @@ from pathlib import Path
 
 import breakaway as bk
 
+SHARED = (
+    "stiction_n",
+    "coulomb_n",
+    "stiffness_n_per_m",
+    "damping_n_s_per_m",
+    "engagement_length_m",
+    "residual_n",
+)
+
 
 def main() -> None:
     """Extract the bolt under both laws and print what happens to it."""
     lugre = bk.load_scenario(Path(__file__).with_name("bolt.toml"))
-    shared = lugre.joint.model_dump(
-        exclude={"law", "viscous_n_s_per_m", "stribeck_velocity_m_per_s"}
-    )
+    shared = {name: getattr(lugre.joint, name) for name in SHARED}
     two_region = lugre.with_(name="two-region law", joint=bk.TwoRegion(**shared))
     for scenario in (lugre.with_(name="LuGre"), two_region):
         run = bk.simulate(scenario)

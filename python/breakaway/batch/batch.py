@@ -194,5 +194,9 @@ UNITS = {
     "_m": "m",
     "_j": "J",
     "_s": "s",
+    "_a": "A",
+    "_w": "W",
+    "_f": "F",
+    "_v": "V",
 }
 """Ending of a name -> unit; longer endings first."""

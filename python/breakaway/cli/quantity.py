@@ -26,6 +26,10 @@ _UNITS = (
     ("_n", "N", True),
     ("_j", "J", True),
     ("_s", "s", True),
+    ("_a", "A", True),
+    ("_w", "W", True),
+    ("_f", "F", True),
+    ("_v", "V", True),
     ("_m", "m", True),
 )
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
