@@ -207,7 +207,11 @@ impl Recorder {
 ///         ExtractionState::at_rest().map(&mut |name, _: f64| recorder.field("state", name));
 ///     let draws = Draws { disturbance: recorder.input("disturbance"), ..Draws::none() };
 ///     loop_.step(&mut state, draws);
-///     state.map(&mut |name, value| recorder.output(name, value));
+///     let mut place = 0;
+///     state.map(&mut |name, value| {
+///         place += 1;
+///         recorder.output(format!("{name} {place}"), value);
+///     });
 /// });
 /// assert_eq!(graph.inputs().len(), graph.outputs().len() + 1);
 /// ```
