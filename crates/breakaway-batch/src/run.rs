@@ -78,24 +78,14 @@ pub fn run<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<Ru
         #[allow(unsafe_code)]
         return unsafe { run_with_fma(job, keep_going) };
     }
-    run_loop(job, keep_going)
+    run_kinds(job, keep_going)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 #[allow(unsafe_code)]
 unsafe fn run_with_fma<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<Run, E> {
-    run_loop(job, keep_going)
-}
-
-/// Compiles the commonest kinds on their own: where they are known, the loop is a tenth faster than
-/// with a choice at every step. Both give the same bits.
-#[inline(always)]
-fn run_loop<E>(job: &Job, keep_going: impl FnMut() -> Result<(), E>) -> Result<Run, E> {
-    match plain_kinds(&job.extraction) {
-        Some(extraction) => run_kinds(&Job { extraction, ..*job }, keep_going),
-        None => run_kinds(job, keep_going),
-    }
+    run_kinds(job, keep_going)
 }
 
 /// The extraction again if it is of the commonest kinds, written so that the compiler sees them.
@@ -295,7 +285,7 @@ impl Job {
 
 #[cfg(test)]
 mod tests {
-    use super::{Job, run, run_kinds, run_loop};
+    use super::{Job, run, run_kinds};
     use breakaway_core::test_models::{paper_as_computed, paper_limits};
     use std::convert::Infallible;
 
@@ -311,12 +301,9 @@ mod tests {
         };
         job.extraction.disturbance.var = 0.2;
         let Ok(chosen) = run::<Infallible>(&job, || Ok(()));
-        let Ok(portable) = run_loop::<Infallible>(&job, || Ok(()));
-        let Ok(general) = run_kinds::<Infallible>(&job, || Ok(()));
-        for other in [portable, general] {
-            assert_eq!(chosen.metrics, other.metrics);
-            assert_eq!(chosen.trace, other.trace);
-        }
+        let Ok(portable) = run_kinds::<Infallible>(&job, || Ok(()));
+        assert_eq!(chosen.metrics, portable.metrics);
+        assert_eq!(chosen.trace, portable.trace);
     }
 
     #[test]
