@@ -49,6 +49,11 @@ const C64: [f64; 10] = [
 ];
 
 #[inline(always)]
+pub(crate) fn exp2_f64(y: f64) -> (f64, f64) {
+    exp2_parts_in_double(y, |n| f64::from_bits(n.to_bits() << 52))
+}
+
+#[inline(always)]
 pub(crate) fn exp2_f32(y: f32) -> (f32, f32) {
     const ROUND: f32 = 12_582_912.0; // 1.5·2²³
     let n = (y + ROUND) - ROUND;
