@@ -16,7 +16,7 @@ use breakaway_core::test_models::{paper_as_computed, paper_limits};
 const SAMPLES: u64 = 50_000;
 const SIMULATED_S: f64 = 0.5;
 /// Turns that each case takes.
-const TURNS: usize = 100;
+const TURNS: usize = 30;
 /// Packs of lanes for each thread.
 const PACKS: usize = 2;
 
@@ -46,6 +46,7 @@ fn cases() -> Vec<Case> {
     let fast = Instructions::fastest();
     let lanes = fast.lanes();
     let plain = job(0.0);
+    let traced = Job { trace_every: 10, ..plain };
     let batch = move |job: Job, threads: usize, figures: &[&str]| {
         let figures = named(figures);
         move || mean_of_first(&job, fast, threads, &figures)
@@ -58,6 +59,7 @@ fn cases() -> Vec<Case> {
     };
     let mut cases = vec![
         case("single_run", 1, Box::new(move || single(&plain))),
+        case("single_run_traced", 1, Box::new(move || single(&traced))),
         case("single_run_by_hand", 1, Box::new(|| iae_of_one_by_hand(SAMPLES))),
         case("batch_1_thread", PACKS * lanes, Box::new(batch(plain, 1, &["iae_m_s"]))),
         case("batch_2_threads", 2 * PACKS * lanes, Box::new(batch(plain, 2, &["iae_m_s"]))),

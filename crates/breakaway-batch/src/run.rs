@@ -120,11 +120,7 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
     let Extraction { disturbance, timing, .. } = job.extraction;
     let mut draws =
         HeldDraws::new(job.seed, [job.run], |_| disturbance, |_| timing.control_period_s);
-    let mut trace = Trace::default();
-    let (mut next_row, last_row) = match job.trace_every {
-        0 => (u64::MAX, u64::MAX),
-        _ => (0, job.samples - 1),
-    };
+    let mut rows = Rows::of(job);
     let plain = plain_kinds(&job.extraction);
     let per_check = (STEPS_PER_CHECK / u64::from(job.extraction.timing.steps_per_period)).max(1);
     let mut n = 0;
@@ -132,37 +128,43 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
         let redraw = draws.redraw_after(n);
         let disturbance = draws.held()[0];
         let check = (n / per_check + 1) * per_check;
-        let last = if n == next_row || n == last_row {
-            let sample = progress.take_one(job, disturbance, n);
-            n += 1;
-            let bounded = progress.metrics.bounded == 1.0;
-            if n == next_row + 1 && bounded {
-                record(&mut trace, &sample);
-                next_row += job.trace_every;
-            }
-            (!progress.metrics.goes_on() || n == job.samples).then_some(sample)
-        } else {
-            let end = job.samples.min(redraw).min(next_row).min(last_row).min(check);
-            let (taken, last) = match &plain {
-                Some(plain) => progress.advance(plain, job, disturbance, n..end),
-                None => progress.advance(&job.extraction, job, disturbance, n..end),
-            };
-            n = taken;
-            last
+        let end = job.samples.min(redraw).min(check);
+        let (taken, last) = match &plain {
+            Some(plain) => progress.advance(plain, job, disturbance, n..end, &mut rows),
+            None => progress.advance(&job.extraction, job, disturbance, n..end, &mut rows),
         };
-        if let Some(sample) = last {
-            if job.trace_every != 0 {
-                let end = progress.metrics.bounded == 1.0;
-                let row = if end { job.end_of(&sample, &progress.state) } else { sample };
-                record(&mut trace, &row);
-            }
+        n = taken;
+        if let (Some(sample), true) = (last, job.trace_every != 0) {
+            let end = progress.metrics.bounded == 1.0;
+            let row = if end { job.end_of(&sample, &progress.state) } else { sample };
+            record(&mut rows.trace, row_of(&row));
         }
         if n == check {
             keep_going()?;
         }
     }
     let Progress { state, metrics } = progress;
-    Ok(Run { trace, ..Run::finished(metrics, state.plant.position_m, &job.limits) })
+    Ok(Run { trace: rows.trace, ..Run::finished(metrics, state.plant.position_m, &job.limits) })
+}
+
+/// The rows that were kept so far.
+struct Rows {
+    trace: Trace,
+    next: u64,
+    every: u64,
+}
+
+impl Rows {
+    fn of(job: &Job) -> Self {
+        match job.trace_every {
+            0 => Self { trace: Trace::default(), next: u64::MAX, every: 0 },
+            every => {
+                let most = usize::try_from(job.samples / every + 2).unwrap_or(0);
+                let trace = std::array::from_fn(|_| Vec::with_capacity(most));
+                Self { trace, next: 0, every }
+            }
+        }
+    }
 }
 
 /// A run under way.
@@ -172,9 +174,9 @@ struct Progress {
 }
 
 impl Progress {
-    /// Takes samples with one draw of the disturbance; stops at one that ends the run, and gives it,
-    /// after the number of the next. What moves at every sample is kept in local variables, and so
-    /// in registers.
+    /// Takes samples with one draw of the disturbance. Stops at one that ends the run, and gives it
+    /// after the number of the next. What moves at every sample is kept in local variables, and so in
+    /// registers.
     #[inline(always)]
     fn advance(
         &mut self,
@@ -182,37 +184,38 @@ impl Progress {
         job: &Job,
         disturbance: f64,
         samples: Range<u64>,
+        rows: &mut Rows,
     ) -> (u64, Option<Sample<f64>>) {
         let (extraction, limits) = (*extraction, job.limits);
         let (mut state, mut metrics) = (self.state, self.metrics);
         metrics.bounded = 1.0; // as it is; said here, it need not be asked at every sample
         metrics.over = 0.0; // likewise
+        let mut next_row = rows.next;
         let mut last = None;
         let mut n = samples.start;
         while n < samples.end {
             let sample = extraction.step(&mut state, job.draws(&extraction, disturbance, n));
             metrics.update(Groups::ALL, &limits, &sample);
+            let bounded = metrics.bounded == 1.0;
+            if n == next_row && bounded {
+                record(&mut rows.trace, row_of(&sample));
+                next_row += rows.every;
+            }
             n += 1;
-            if !metrics.goes_on() {
+            if !metrics.goes_on() || n == job.samples {
                 last = Some(sample);
                 break;
             }
         }
+        rows.next = next_row;
         (self.state, self.metrics) = (state, metrics);
         (n, last)
     }
-
-    /// Takes one sample and gives it.
-    #[inline(always)]
-    fn take_one(&mut self, job: &Job, disturbance: f64, n: u64) -> Sample<f64> {
-        let sample = job.extraction.step(&mut self.state, job.draws(&job.extraction, disturbance, n));
-        self.metrics.update(Groups::ALL, &job.limits, &sample);
-        sample
-    }
 }
 
-fn record(trace: &mut Trace, sample: &Sample<f64>) {
-    let row = [
+#[inline(always)]
+fn row_of(sample: &Sample<f64>) -> [f64; TRACE_COLUMNS.len()] {
+    [
         sample.time_s,
         sample.reference_m,
         sample.position_m,
@@ -220,7 +223,11 @@ fn record(trace: &mut Trace, sample: &Sample<f64>) {
         sample.bristle_m,
         sample.applied_force_n,
         sample.joint_force_n,
-    ];
+    ]
+}
+
+#[inline(never)]
+fn record(trace: &mut Trace, row: [f64; TRACE_COLUMNS.len()]) {
     for (column, value) in trace.iter_mut().zip(row) {
         column.push(value);
     }

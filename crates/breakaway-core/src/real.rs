@@ -210,12 +210,7 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(
-    f64,
-    6_755_399_441_055_744.0,
-    exp2::exp2_f64,
-    fused::fma_f64
-);
+impl_real!(f64, 6_755_399_441_055_744.0, exp2::exp2_f64, fused::fma_f64);
 impl_real!(f32, 12_582_912.0, exp2::exp2_f32, fused::fma_f32);
 
 #[cfg(test)]

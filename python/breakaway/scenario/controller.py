@@ -151,10 +151,13 @@ class TimedImpacts(Model):
     until the part slips: what slips at the peak slips under a force that already falls. The part
     coasts to rest before the next impact.
 
+    Above the force of the first slip an impact first dwells and then is raised: a part that is slow
+    for its mass needs time. A rough slip lowers the ceiling and puts the target off.
+
     Examples
     --------
-    >>> TimedImpacts(travel_m=0.1, target_s=8.0).restart_ratio
-    0.7
+    >>> TimedImpacts(travel_m=0.1, target_s=5.0).restart_ratio
+    0.8
 
     """
 
@@ -168,7 +171,7 @@ class TimedImpacts(Model):
     """Force at which the first search begins, in N."""
     search_time_constant_s: Positive = 60e-3
     """Time in which the force grows by e while the joint is searched for, in s."""
-    rise_time_constant_s: Positive = 4e-3
+    rise_time_constant_s: Positive = 7e-3
     """Time in which it grows by e once something has slipped, in s."""
     slowing_m_per_s: NotNegative = 0.004
     """Velocity above which the force grows slower, in m/s."""
@@ -176,16 +179,33 @@ class TimedImpacts(Model):
     """Velocity above which the force does not grow, in m/s."""
     step_min_m: Positive = 30e-6
     """Smallest step, in m."""
-    step_max_m: Positive = 110e-6
+    step_max_m: Positive = 100e-6
     """Largest step, in m."""
     travel_min_m: NotNegative = 6e-6
     """Travel below which nothing counts as a slip, in m."""
-    restart_ratio: Fraction = 0.7
+    restart_ratio: Fraction = 0.8
     """Share of the ceiling at which an impact begins."""
-    probe_ratio: NotNegative = 0.03
+    probe_ratio: NotNegative = 0.025
     """Share by which a fruitless impact raises the ceiling."""
-    breakaway_share: Fraction = 0.3
+    breakaway_share: Fraction = 0.2
     """Share by which the ceiling follows the force of a slip that was seen."""
+    dwell_from_ratio: NotNegative = 1.0
+    """Ceiling over the force of the first slip from which a fruitless impact is not raised at once, but
+    dwells longer at its ceiling."""
+    dwell_step_s: NotNegative = 2e-4
+    """What each such impact adds to the dwell, in s."""
+    dwell_max_s: NotNegative = 1e-3
+    """Longest dwell, in s; after it, the ceiling rises. 0 for none."""
+    dwell_kept_share: Fraction = 0.9
+    """Share of the dwell that stays after a slip that was seen."""
+    rough_slip_m: Positive = 150e-6
+    """Travel of a slip beyond which it is rough, in m."""
+    rough_cut_ratio: Fraction = 0.1
+    """Share by which a rough slip lowers the ceiling."""
+    patience_s: NotNegative = 0.2
+    """Time by which a rough slip puts target_s off, in s."""
+    patience_max_s: NotNegative = 2.8
+    """Most by which target_s is put off, in s."""
     coast_min_s: NotNegative = 1e-3
     """Shortest coast, in s."""
     settled_m: Positive = 3e-6

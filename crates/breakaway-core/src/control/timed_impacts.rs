@@ -9,11 +9,11 @@ use crate::real::Real;
 const WINDOW: usize = 8;
 
 parameters! {
-    /// Impacts that end as soon as the part slips, or fruitless at a ceiling. No friction parameter is
-    /// needed.
+    /// Impacts that end as soon as the part slips, or fruitless at a ceiling. No friction parameter
+    /// is needed.
     ///
     /// ```text
-    ///            (x − x₀) + κ v̂ ≥ Δ,  or F = C and v̂ < v_1
+    ///            (x − x₀) + κ v̂ ≥ Δ,  or F = C, v̂ < v_1, and dwelt
     ///   ┌──────┐ ─────────────────────────> ┌───────┐   x ≥ l   ┌──────┐
     ///   │ rise │                            │ coast │ ────────> │ free │
     ///   └──────┘ <───────────────────────── └───────┘           └──────┘
@@ -23,24 +23,30 @@ parameters! {
     /// ```
     ///
     /// Exponential growth makes an overshoot relative: a weak part meets as many percent too much as
-    /// a strong one. The first search rises from F_1 with τ_s until something slips. From then on an
-    /// impact rises with τ from `restart_ratio` C to the ceiling C. There it ends, unless the part is
-    /// seen to move: what is heavy for its friction is pushed on, to Δ; what slips at the peak slips
-    /// under a force that already falls, so that the slip need not be seen to be short. The ceiling is set so that
-    /// impacts make the step:
+    /// a strong one. The first search rises from F_1 with τ_s until something slips, at F_b. From then
+    /// on an impact rises with τ from `restart_ratio` C to the ceiling C. There it ends, unless the
+    /// part is seen to move: what is heavy for its friction is pushed on, to Δ; what slips at the peak
+    /// slips under a force that already falls, so that the slip need not be seen to be short. The
+    /// ceiling is set so that impacts make the step:
     ///
     /// ```text
     /// C ← C [1 + p clip((Δ − s) / Δ, −3, 1)]        s the furthest travel of the impact
     /// ```
     ///
-    /// with p = `probe_ratio`. If the slip was seen before, C first moves by `breakaway_share` to the largest
-    /// force of that impact as modeled, a lag behind the command.
+    /// with p = `probe_ratio`. If the slip was seen before, C first moves by `breakaway_share` to the
+    /// largest force of that impact as modeled, a lag behind the command. At F_b and above, a
+    /// fruitless impact is not raised at once but dwells longer at C: a part that is slow for its mass
+    /// needs time and not more force, and one whose friction varies slips when that is low.
     ///
-    /// v̂ is the largest slope of least squares over 3, 5 and 8 positions, each less `noise_margin` of its
-    /// deviation from noise, once x has left x₀ by more than the joint's recoil: before, it only stretches. The lead κ adapts: a slip beyond Δ multiplies it by 1.15, one short of
-    /// Δ by 0.95. Δ is what has to be traveled in each cycle to be out at t_end, plus the recoil of
-    /// the joint, within its limits. The part counts as free once the mean of three positions is
-    /// `free_margin` beyond l.
+    /// After a rough slip, C is lowered and t_end put off: smaller forces, which are enough only
+    /// while friction is low, let go of less.
+    ///
+    /// v̂ is the largest slope of least squares over 3, 5 and 8 positions, each less `noise_margin` of
+    /// its deviation from noise; where it slows the rise and times the cut, only once x has left x₀
+    /// by more than the joint's recoil: before, that only stretches. The lead κ adapts: a slip beyond
+    /// Δ multiplies it by 1.15, one short of Δ by 0.95. Δ is what has to be traveled in each cycle to
+    /// be out at t_end, plus the recoil of the joint, within its limits. The part counts as free once
+    /// the mean of three positions is `free_margin` beyond l.
     pub struct TimedImpacts {
         /// l in m: where the part is out.
         pub travel_m,
@@ -68,6 +74,22 @@ parameters! {
         pub probe_ratio,
         /// Share by which C follows the force of a slip that was seen.
         pub breakaway_share,
+        /// F/F_b from which a fruitless impact dwells longer before it is raised.
+        pub dwell_from_ratio,
+        /// What each such impact adds to the dwell, s.
+        pub dwell_step_s,
+        /// Longest dwell, s.
+        pub dwell_max_s,
+        /// Share of the dwell that stays after a slip that was seen.
+        pub dwell_kept_share,
+        /// Travel of a slip in m beyond which it is rough.
+        pub rough_slip_m,
+        /// Share by which a rough slip lowers C.
+        pub rough_cut_ratio,
+        /// Time by which a rough slip puts t_end off, s.
+        pub patience_s,
+        /// Most by which t_end is put off, s.
+        pub patience_max_s,
         /// t_c in s.
         pub coast_min_s,
         /// d in m.
@@ -115,6 +137,14 @@ parameters! {
         pub peak_n,
         /// C in N, 0 until the first slip.
         pub ceiling_n,
+        /// F_b in N: the modeled force of the first slip.
+        pub first_slip_n,
+        /// How long this dwell may be, s.
+        pub dwell_s,
+        /// Time at the ceiling in this impact, s.
+        pub dwelt_s,
+        /// How far t_end was put off, s.
+        pub put_off_s,
         /// x₀ in m.
         pub start_m,
         /// Largest position in the cycle, m.
@@ -156,6 +186,10 @@ impl<R: Real> TimedImpactsState<R> {
             modeled_n: zero,
             peak_n: zero,
             ceiling_n: zero,
+            first_slip_n: zero,
+            dwell_s: zero,
+            dwelt_s: zero,
+            put_off_s: zero,
             start_m: zero,
             furthest_m: zero,
             lead_s: zero,
@@ -215,7 +249,9 @@ impl<R: Real> TimedImpacts<R> {
         let v = R::select(stretched.lt(measured.position_m), seen, R::zero());
         let rising = !n.coasting.is_set() & !n.free.is_set();
         let known = R::zero().lt(n.ceiling_n);
-        let spent = known & n.ceiling_n.le(n.force_n) & v.lt(self.slowing_m_per_s);
+        let at_ceiling = rising & known & n.ceiling_n.le(n.force_n);
+        n.dwelt_s = R::select(at_ceiling, n.dwelt_s + measured.period_s, n.dwelt_s);
+        let spent = at_ceiling & seen.lt(self.slowing_m_per_s) & n.dwell_s.lt(n.dwelt_s);
         let slips = self.slips(n, measured.position_m, v);
         let cut = rising & (slips | spent);
         n.seen_to_slip = R::select(cut, R::flag(slips), n.seen_to_slip);
@@ -309,31 +345,30 @@ impl<R: Real> TimedImpacts<R> {
     /// The cycle after this one, from where the part rests.
     #[inline(always)]
     fn next_cycle(&self, n: &ImpactNumbers<R>) -> ImpactNumbers<R> {
-        let (zero, one) = (R::zero(), R::one());
-        let share = R::constant(NEW_SHARE);
-        let slipped = n.seen_to_slip.is_set();
-        let beyond = n.step_m.lt(n.furthest_m - n.start_m);
-        let factor = R::select(beyond, R::constant(LEAD_UP), R::constant(LEAD_DOWN));
-        let lead = (n.lead_s * factor).clamp(self.lead_min_s, self.lead_max_s);
-        let recoil = share.mul_add((n.furthest_m - n.mean_m) - n.recoil_m, n.recoil_m);
+        let (zero, one, share) = (R::zero(), R::one(), R::constant(NEW_SHARE));
         let first = n.ceiling_n.le(zero);
-        let followed = self.breakaway_share.mul_add(n.peak_n - n.ceiling_n, n.ceiling_n);
-        let base = R::select(slipped, followed, n.ceiling_n);
-        let missing = (n.step_m - (n.furthest_m - n.start_m)) / n.step_m;
-        let correction = self.probe_ratio * missing.clamp(-R::constant(MOST_DOWN), one);
-        let ceiling = R::select(first, n.peak_n, base * (one + correction));
+        let travel = n.furthest_m - n.start_m;
+        let recoil = share.mul_add((n.furthest_m - n.mean_m) - n.recoil_m, n.recoil_m);
         let mean_cycle = share.mul_add(n.in_cycle_s - n.cycle_s, n.cycle_s);
         let cycle = R::select(first, R::constant(FIRST_CYCLE_S), mean_cycle);
-        let left_s = (self.target_s - n.elapsed_s).max(cycle);
+        let rough = self.rough_slip_m.lt(travel);
+        let later = (n.put_off_s + self.patience_s).min(self.patience_max_s);
+        let put_off = R::select(rough, later, n.put_off_s);
+        let left_s = (self.target_s + put_off - n.elapsed_s).max(cycle);
         let needed = (self.travel_m - n.mean_m) / left_s * cycle + recoil;
+        let (ceiling, dwell) = self.next_ceiling(n, travel, rough);
         ImpactNumbers {
             coasting: zero,
             force_n: self.restart_ratio * ceiling,
             peak_n: zero,
             ceiling_n: ceiling,
+            first_slip_n: R::select(first, n.peak_n, n.first_slip_n),
+            dwell_s: dwell,
+            dwelt_s: zero,
+            put_off_s: put_off,
             start_m: n.mean_m,
             furthest_m: n.mean_m,
-            lead_s: R::select(slipped, lead, n.lead_s),
+            lead_s: self.next_lead(n, travel),
             step_m: needed.clamp(self.step_min_m, self.step_max_m),
             recoil_m: recoil,
             cycle_s: cycle,
@@ -341,5 +376,33 @@ impl<R: Real> TimedImpacts<R> {
             coasted_s: zero,
             ..*n
         }
+    }
+
+    /// C in N and the dwell at it in s, after an impact of some travel.
+    #[inline(always)]
+    fn next_ceiling(&self, n: &ImpactNumbers<R>, travel: R, rough: R::Mask) -> (R, R) {
+        let (zero, one) = (R::zero(), R::one());
+        let slipped = n.seen_to_slip.is_set();
+        let first = n.ceiling_n.le(zero);
+        let high = !first & (self.dwell_from_ratio * n.first_slip_n).le(n.ceiling_n);
+        let dwells = high & n.dwell_s.lt(self.dwell_max_s) & !slipped;
+        let longer = R::select(dwells, n.dwell_s + self.dwell_step_s, n.dwell_s);
+        let dwell = R::select(slipped, n.dwell_s * self.dwell_kept_share, longer);
+        let followed = self.breakaway_share.mul_add(n.peak_n - n.ceiling_n, n.ceiling_n);
+        let base = R::select(slipped, followed, n.ceiling_n);
+        let missing = (n.step_m - travel) / n.step_m;
+        let most_up = R::select(dwells, zero, one);
+        let correction = self.probe_ratio * missing.clamp(-R::constant(MOST_DOWN), most_up);
+        let kept = one - R::select(rough, self.rough_cut_ratio, zero);
+        (R::select(first, n.peak_n, base * (one + correction) * kept), dwell)
+    }
+
+    /// κ in s, after an impact of some travel.
+    #[inline(always)]
+    fn next_lead(&self, n: &ImpactNumbers<R>, travel: R) -> R {
+        let beyond = n.step_m.lt(travel);
+        let factor = R::select(beyond, R::constant(LEAD_UP), R::constant(LEAD_DOWN));
+        let lead = (n.lead_s * factor).clamp(self.lead_min_s, self.lead_max_s);
+        R::select(n.seen_to_slip.is_set(), lead, n.lead_s)
     }
 }
