@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, TypeVar
 
 from breakaway.design.pole_placement import pole_placement, residual_n
+from breakaway.scenario.actuator import ForceActuator
 from breakaway.scenario.controller import (
     AnyController,
     FmVibration,
@@ -59,6 +60,9 @@ def resolve(scenario: Scenario) -> Scenario:
             "breakaway_travel_m": _breakaway_travel_m(joint)
             if limits.breakaway_travel_m is None
             else limits.breakaway_travel_m,
+            "contact_force_n": _contact_force_n(scenario)
+            if limits.contact_force_n is None
+            else limits.contact_force_n,
         }
     )
     return scenario.model_copy(
@@ -68,6 +72,12 @@ def resolve(scenario: Scenario) -> Scenario:
             "controller": with_gains(scenario),
         }
     )
+
+
+def _contact_force_n(scenario: Scenario) -> float:
+    """What is behind a lag fades, and is never quite zero."""
+    actuator = scenario.actuator
+    return 1e-3 * actuator.force_max_n if isinstance(actuator, ForceActuator) else 0.0
 
 
 def _breakaway_travel_m(joint: AnyJoint) -> float:

@@ -61,9 +61,9 @@ class RunMetrics:
     friction_loss_j: float
     """Work lost in the joint: done on it, less what its bristles still store, J."""
     impacts: float
-    """Number of impacts: stretches of time with F > 0."""
+    """Number of impacts: stretches of time with F > limits.contact_force_n."""
     contact_time_s: float
-    """Time with F > 0, s."""
+    """Time with F > limits.contact_force_n, s."""
     mean_impact_s: float
     """Mean duration of an impact, s."""
     largest_step_m: float

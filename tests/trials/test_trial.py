@@ -155,3 +155,12 @@ def test_a_ramp_and_then_impacts_free_gently_what_the_ramp_alone_throws_out(popu
     assert not one.within(population.gentle).any()
     run = two.replay(3, trace_every=0)
     assert run.metrics.largest_jump_m == two.metrics["largest_jump_m"][3]
+
+
+def test_impacts_behind_a_lag_are_told_apart(population):
+    trial = bk.run_trial(population, bk.load_method("timed_impacts"), runs=range(4), seed=1)
+    assert (trial.metrics["impacts"] > 5).all()
+    scenario = trial.scenario(0)
+    assert bk.resolve(scenario).limits.contact_force_n == 1e-3 * scenario.actuator.force_max_n
+    never = scenario.with_({"limits.contact_force_n": 1e9, "trace.every_samples": 0})
+    assert bk.simulate(never).metrics.impacts == 0

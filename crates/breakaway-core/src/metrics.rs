@@ -19,6 +19,8 @@ parameters! {
         pub after_release_s,
         /// Travel in m at which the joint counts as loose: twice the presliding travel F_s0 / k_e.
         pub breakaway_travel_m,
+        /// F in N above which the actuator counts as pushing.
+        pub contact_force_n,
         /// Largest |F| in N that is allowed.
         pub peak_force_max_n,
         /// Largest jump in m that is allowed.
@@ -147,11 +149,11 @@ parameters! {
         pub joint_work_j,
         /// Time during which the actuator could not deliver the command, s.
         pub saturated_s,
-        /// Time during which F > 0, s.
+        /// Time in contact, s: with F above the contact force.
         pub contact_s,
-        /// Number of impacts: stretches of time with F > 0.
+        /// Number of impacts: stretches of time in contact.
         pub impacts,
-        /// 1 while F > 0, else 0.
+        /// 1 while in contact, else 0.
         pub in_contact,
         /// Travel since the start of the last impact, m.
         pub step_m,
@@ -337,7 +339,7 @@ impl<R: Real> Metrics<R> {
             self.saturated_s = self.saturated_s + saturated_s;
         }
         if wanted.impacts {
-            self.count_impacts(period_s, force, travel);
+            self.count_impacts(limits, period_s, force, travel);
         }
         if wanted.jump {
             let in_guide = sample.position_m.lt(limits.release_position_m);
@@ -365,9 +367,9 @@ impl<R: Real> Metrics<R> {
     }
 
     #[inline(always)]
-    fn count_impacts(&mut self, period_s: R, force: R, travel: R) {
+    fn count_impacts(&mut self, limits: &Limits<R>, period_s: R, force: R, travel: R) {
         let zero = R::zero();
-        let contact = zero.lt(force);
+        let contact = limits.contact_force_n.lt(force);
         let starts = contact & !self.in_contact.is_set();
         self.in_contact = R::flag(contact);
         self.contact_s = self.contact_s + R::select(contact, period_s, zero);

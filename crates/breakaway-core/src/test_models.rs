@@ -83,6 +83,7 @@ pub fn paper_limits() -> Limits<f64> {
         release_position_m: 0.1 - 1e-6,
         after_release_s: f64::INFINITY,
         breakaway_travel_m: 2.5e-5,
+        contact_force_n: 0.0,
         peak_force_max_n: f64::INFINITY,
         jump_max_m: f64::INFINITY,
         release_velocity_max_m_per_s: f64::INFINITY,

@@ -190,8 +190,8 @@ class TimedImpacts(Model):
     breakaway_share: Fraction = 0.2
     """Share by which the ceiling follows the force of a slip that was seen."""
     dwell_from_ratio: NotNegative = 1.0
-    """Ceiling over the force of the first slip from which a fruitless impact is not raised at once, but
-    dwells longer at its ceiling."""
+    """Ceiling over the force of the first slip from which a fruitless impact is not raised at once,
+    but dwells longer at its ceiling."""
     dwell_step_s: NotNegative = 2e-4
     """What each such impact adds to the dwell, in s."""
     dwell_max_s: NotNegative = 1e-3

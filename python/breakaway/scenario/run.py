@@ -47,6 +47,9 @@ class Limits(Model):
     breakaway_travel_m: Positive | None = None
     """Travel at which the joint counts as loose, in m. Left out: 2 stiction_n /
     stiffness_n_per_m."""
+    contact_force_n: NotNegative | None = None
+    """Force above which the actuator counts as pushing, in N: what impacts are told apart by. Left
+    out: 0, or behind a lag a thousandth of the actuator's largest force."""
     peak_force_max_n: Positive | None = None
     """Largest force that the part may see, in N. Left out: any."""
     jump_max_m: Positive | None = None

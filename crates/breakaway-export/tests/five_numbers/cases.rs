@@ -390,6 +390,7 @@ pub(crate) fn limits() -> Limits<f64> {
         release_position_m: LENGTH_M,
         after_release_s: f64::INFINITY,
         breakaway_travel_m: 1.5e-4,
+        contact_force_n: 0.0,
         peak_force_max_n: f64::INFINITY,
         jump_max_m: f64::INFINITY,
         release_velocity_max_m_per_s: f64::INFINITY,
