@@ -2,6 +2,7 @@
 
 use crate::disturbance::Factors;
 use crate::joint::{At, Bristle, ElementState, Elements, Frozen, JointState, Law, Rigid};
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -24,14 +25,14 @@ pub struct PlantState<R> {
 
 impl<R: Copy> PlantState<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> PlantState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> PlantState<S> {
         PlantState {
-            position_m: f("position_m", self.position_m),
-            velocity_m_per_s: f("velocity_m_per_s", self.velocity_m_per_s),
-            bristle_m: f("bristle_m", self.bristle_m),
-            sliding: f("sliding", self.sliding),
-            joint_force_n: f("joint_force_n", self.joint_force_n),
-            elements: self.elements.map(f),
+            position_m: f(Name::of("position_m"), self.position_m),
+            velocity_m_per_s: f(Name::of("velocity_m_per_s"), self.velocity_m_per_s),
+            bristle_m: f(Name::of("bristle_m"), self.bristle_m),
+            sliding: f(Name::of("sliding"), self.sliding),
+            joint_force_n: f(Name::of("joint_force_n"), self.joint_force_n),
+            elements: within!("elements", self.elements, f),
         }
     }
 }

@@ -77,6 +77,17 @@ pub trait Real:
         block.compute()
     }
 
+    /// Says what the number is, to numbers that keep it: a recording, whose code shall be read.
+    #[inline(always)]
+    fn named(self, _name: &'static str) -> Self {
+        self
+    }
+
+    /// Says which block's arithmetic follows, to numbers that keep it. A colon ends the block's name;
+    /// what comes after is its equation.
+    #[inline(always)]
+    fn section(_title: &'static str) {}
+
     /// Absolute value.
     fn abs(self) -> Self;
 
@@ -216,7 +227,12 @@ impl_real!(
     |y| exp2::exp2_parts_in_double(y, |n: f64| f64::from_bits(n.to_bits() << 52)),
     fused::fma_f64
 );
-impl_real!(f32, 12_582_912.0, exp2::exp2_f32, fused::fma_f32);
+impl_real!(
+    f32,
+    12_582_912.0,
+    |y| exp2::exp2_parts_in_single(y, |n: f32| f32::from_bits(n.to_bits() << 23)),
+    fused::fma_f32
+);
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,6 @@
 //! Where the part should be: references from the seat to a distance, with their rate.
 
+use crate::name::Name;
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -77,7 +78,7 @@ pub enum Reference<R> {
 
 impl<R: Real> Reference<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Reference<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Reference<S> {
         match self {
             Self::Step(p) => Reference::Step(p.map(f)),
             Self::Ramp(p) => Reference::Ramp(p.map(f)),

@@ -1,5 +1,6 @@
 //! What a controller gets to see of position and force.
 
+use crate::name::{Name, within};
 use crate::real::Real;
 
 /// Most samples that a sensor can be late.
@@ -42,21 +43,21 @@ impl<R: Real> SensorState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> SensorState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SensorState<S> {
         SensorState {
-            filtered: f("filtered", self.filtered),
-            late: self.late.map(|value| f("late", value)),
+            filtered: f(Name::of("filtered"), self.filtered),
+            late: self.late.map(|value| f(Name::of("late"), value)),
         }
     }
 }
 
 impl<R: Real> Sensor<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Sensor<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensor<S> {
         Sensor {
-            noise_rms: f("noise_rms", self.noise_rms),
-            quantum: self.quantum.map(|q| f("quantum", q)),
-            bandwidth_hz: self.bandwidth_hz.map(|hertz| f("bandwidth_hz", hertz)),
+            noise_rms: f(Name::of("noise_rms"), self.noise_rms),
+            quantum: self.quantum.map(|q| f(Name::of("quantum"), q)),
+            bandwidth_hz: self.bandwidth_hz.map(|hertz| f(Name::of("bandwidth_hz"), hertz)),
             delay_samples: self.delay_samples,
         }
     }
@@ -108,8 +109,8 @@ pub struct Sensors<R> {
 
 impl<R: Real> Sensors<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Sensors<S> {
-        Sensors { position: self.position.map(f), force: self.force.map(f) }
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensors<S> {
+        Sensors { position: within!("position", self.position, f), force: within!("force", self.force, f) }
     }
 }
 
@@ -129,8 +130,8 @@ impl<R: Real> SensorsState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> SensorsState<S> {
-        SensorsState { position: self.position.map(f), force: self.force.map(f) }
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SensorsState<S> {
+        SensorsState { position: within!("position", self.position, f), force: within!("force", self.force, f) }
     }
 }
 

@@ -22,7 +22,15 @@
 #![forbid(unsafe_code)]
 
 pub mod expr;
+pub mod c;
+pub mod derive;
 pub mod graph;
+pub mod model;
+pub mod passes;
+pub mod program;
+mod record_model;
 
 pub use expr::{Expr, ExprMask, Recorder, record};
-pub use graph::{Bits, Graph, Node, NodeId};
+pub use model::What;
+pub use program::Program;
+pub use graph::{Bits, Graph, Label, Node, NodeId};

@@ -2,6 +2,7 @@
 
 use super::piezo::Charged;
 use super::{ActuatorState, Command, Driven, Effort, Piezo};
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::plant::Push;
 use crate::real::Real;
@@ -129,21 +130,21 @@ impl<R: Real> Chain<R> {
 
 impl<R: Real> FeedAxis<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> FeedAxis<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FeedAxis<S> {
         FeedAxis {
-            speed_max_m_per_s: f("speed_max_m_per_s", self.speed_max_m_per_s),
+            speed_max_m_per_s: f(Name::of("speed_max_m_per_s"), self.speed_max_m_per_s),
             acceleration_max_m_per_s2: f(
-                "acceleration_max_m_per_s2",
+                Name::of("acceleration_max_m_per_s2"),
                 self.acceleration_max_m_per_s2,
             ),
-            stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
-            damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
-            tool_mass_kg: f("tool_mass_kg", self.tool_mass_kg),
+            stiffness_n_per_m: f(Name::of("stiffness_n_per_m"), self.stiffness_n_per_m),
+            damping_n_s_per_m: f(Name::of("damping_n_s_per_m"), self.damping_n_s_per_m),
+            tool_mass_kg: f(Name::of("tool_mass_kg"), self.tool_mass_kg),
             tip: match &self.tip {
                 Tip::Rigid => Tip::Rigid,
-                Tip::Piezo(piezo) => Tip::Piezo(piezo.map(f)),
+                Tip::Piezo(piezo) => Tip::Piezo(within!("tip", piezo, f)),
             },
-            contact: self.contact.map(f),
+            contact: within!("contact", self.contact, f),
         }
     }
 

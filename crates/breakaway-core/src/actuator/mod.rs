@@ -14,6 +14,7 @@ pub use force_actuator::ForceActuator;
 pub use piezo::Piezo;
 pub use push_only::PushOnly;
 
+use crate::name::Name;
 use crate::parameters::parameters;
 use crate::plant::Push;
 use crate::real::Real;
@@ -195,7 +196,7 @@ impl<R: Real> Driven<R> {
 
 impl<R: Real> Actuator<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Actuator<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Actuator<S> {
         match self {
             Self::Ideal => Actuator::Ideal,
             Self::PushOnly(actuator) => Actuator::PushOnly(actuator.map(f)),

@@ -1,6 +1,7 @@
 //! Frequency-modulated vibration.
 
 use super::Measurement;
+use crate::name::Name;
 use crate::real::Real;
 
 /// The course of the force during a pulse, from 0 to 1 and back.
@@ -54,13 +55,13 @@ pub struct FmVibrationState<R> {
 
 impl<R: Real> FmVibration<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> FmVibration<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FmVibration<S> {
         FmVibration {
-            frequency_min_hz: f("frequency_min_hz", self.frequency_min_hz),
-            frequency_max_hz: f("frequency_max_hz", self.frequency_max_hz),
-            error_full_scale_m: f("error_full_scale_m", self.error_full_scale_m),
-            pulse_width_s: f("pulse_width_s", self.pulse_width_s),
-            base_fraction: f("base_fraction", self.base_fraction),
+            frequency_min_hz: f(Name::of("frequency_min_hz"), self.frequency_min_hz),
+            frequency_max_hz: f(Name::of("frequency_max_hz"), self.frequency_max_hz),
+            error_full_scale_m: f(Name::of("error_full_scale_m"), self.error_full_scale_m),
+            pulse_width_s: f(Name::of("pulse_width_s"), self.pulse_width_s),
+            base_fraction: f(Name::of("base_fraction"), self.base_fraction),
             shape: self.shape,
         }
     }

@@ -1,6 +1,7 @@
 //! Sampled PID force controller.
 
 use super::Measurement;
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -138,14 +139,14 @@ impl<R: Real> Pid<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Pid<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Pid<S> {
         Pid {
-            gains: self.gains.map(f),
+            gains: within!("gains", self.gains, f),
             derivative_of: self.derivative_of,
             velocity_from: self.velocity_from,
-            derivative_filter_s: self.derivative_filter_s.map(|tau| f("derivative_filter_s", tau)),
+            derivative_filter_s: self.derivative_filter_s.map(|tau| f(Name::of("derivative_filter_s"), tau)),
             anti_windup: self.anti_windup,
-            tracking_time_s: f("tracking_time_s", self.tracking_time_s),
+            tracking_time_s: f(Name::of("tracking_time_s"), self.tracking_time_s),
         }
     }
 

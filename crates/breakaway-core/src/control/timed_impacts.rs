@@ -2,6 +2,7 @@
 
 use super::Measurement;
 use crate::actuator::Command;
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -184,10 +185,10 @@ impl<R: Real> TimedImpactsState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TimedImpactsState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TimedImpactsState<S> {
         TimedImpactsState {
-            numbers: self.numbers.map(f),
-            window_m: self.window_m.map(|x| f("window_m", x)),
+            numbers: within!("numbers", self.numbers, f),
+            window_m: self.window_m.map(|x| f(Name::of("window_m"), x)),
         }
     }
 }

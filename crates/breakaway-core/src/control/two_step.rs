@@ -4,6 +4,7 @@ use super::{
     ControllerState, ForceRamp, Measurement, Pid, PidState, TimedImpacts, TimedImpactsState,
     VibratingPid, VibrationState,
 };
+use crate::name::{Name, within};
 use crate::real::Real;
 use crate::reference::Setpoint;
 
@@ -66,11 +67,11 @@ pub enum SecondStep<R> {
 
 impl<R: Real> TwoStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TwoStep<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoStep<S> {
         TwoStep {
-            breakaway: self.breakaway.map(f),
-            vibration: self.vibration.map(f),
-            breakaway_travel_m: f("breakaway_travel_m", self.breakaway_travel_m),
+            breakaway: within!("breakaway", self.breakaway, f),
+            vibration: within!("vibration", self.vibration, f),
+            breakaway_travel_m: f(Name::of("breakaway_travel_m"), self.breakaway_travel_m),
         }
     }
 
@@ -127,7 +128,7 @@ impl<R: Real> TwoStep<R> {
 
 impl<R: Real> FirstStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> FirstStep<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FirstStep<S> {
         match self {
             Self::Pid(pid) => FirstStep::Pid(pid.map(f)),
             Self::ForceRamp(c) => FirstStep::ForceRamp(c.map(f)),
@@ -170,7 +171,7 @@ impl<R: Real> FirstStep<R> {
 
 impl<R: Real> SecondStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> SecondStep<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SecondStep<S> {
         match self {
             Self::FmVibration(c) => SecondStep::FmVibration(c.map(f)),
             Self::TimedImpacts(c) => SecondStep::TimedImpacts(c.map(f)),

@@ -3,6 +3,7 @@
 use super::fm_vibration::half_sine;
 use super::{Measurement, SteadyFeed};
 use crate::actuator::Command;
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -67,8 +68,8 @@ impl<R: Real> VibratedFeedState<R> {
 
 impl<R: Real> VibratedFeed<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> VibratedFeed<S> {
-        VibratedFeed { feed: self.feed.map(f), pulses: self.pulses.map(f) }
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> VibratedFeed<S> {
+        VibratedFeed { feed: within!("feed", self.feed, f), pulses: within!("pulses", self.pulses, f) }
     }
 
     /// The command at a sample.

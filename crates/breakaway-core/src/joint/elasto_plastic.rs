@@ -2,6 +2,7 @@
 
 use super::onset::slip_onset;
 use super::{At, Bristle, Lugre};
+use crate::name::{Name, within};
 use crate::real::Real;
 
 /// LuGre friction whose bristle gives back all of its first stretch.
@@ -30,10 +31,10 @@ pub struct ElastoPlastic<R> {
 
 impl<R: Real> ElastoPlastic<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ElastoPlastic<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ElastoPlastic<S> {
         ElastoPlastic {
-            friction: self.friction.map(f),
-            elastic_share: f("elastic_share", self.elastic_share),
+            friction: within!("friction", self.friction, f),
+            elastic_share: f(Name::of("elastic_share"), self.elastic_share),
         }
     }
 

@@ -4,6 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::{At, Lugre};
+use crate::name::{Name, within};
 use crate::real::Real;
 
 /// The most elements that a Maxwell-slip joint can have.
@@ -45,10 +46,10 @@ impl<R: Real> ElementState<R> {
 
 impl<R: Copy> ElementState<R> {
     /// Applies `f` to every number: all deflections, then all slips.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ElementState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ElementState<S> {
         ElementState {
-            deflection_m: core::array::from_fn(|i| f(ELEMENT_M[i], self.deflection_m[i])),
-            slip: core::array::from_fn(|i| f(SLIP[i], self.slip[i])),
+            deflection_m: core::array::from_fn(|i| f(Name::of(ELEMENT_M[i]), self.deflection_m[i])),
+            slip: core::array::from_fn(|i| f(Name::of(SLIP[i]), self.slip[i])),
         }
     }
 
@@ -158,13 +159,13 @@ pub(crate) struct ElementsAhead<R> {
 impl<R: Real> Gms<R> {
     /// Applies `f` to every number: those of [`Lugre`], the attraction, all stiffness shares, all
     /// level shares.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Gms<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Gms<S> {
         Gms {
-            friction: self.friction.map(f),
-            attraction_n_per_s: f("attraction_n_per_s", self.attraction_n_per_s),
+            friction: within!("friction", self.friction, f),
+            attraction_n_per_s: f(Name::of("attraction_n_per_s"), self.attraction_n_per_s),
             elements: self.elements,
-            stiffness_shares: self.stiffness_shares.map(|share| f("stiffness_share", share)),
-            level_shares: self.level_shares.map(|share| f("level_share", share)),
+            stiffness_shares: self.stiffness_shares.map(|share| f(Name::of("stiffness_shares"), share)),
+            level_shares: self.level_shares.map(|share| f(Name::of("level_shares"), share)),
         }
     }
 

@@ -3,6 +3,7 @@
 use core::f64::consts::LOG2_E;
 
 use super::{At, Bristle, engaged_level};
+use crate::name::Name;
 use crate::real::Real;
 
 /// Modified LuGre friction, equations (1) to (8).
@@ -51,21 +52,21 @@ pub struct Lugre<R> {
 
 impl<R: Real> Lugre<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Lugre<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Lugre<S> {
         let v_s = self.stribeck_velocity_m_per_s;
         Lugre {
-            stiction_n: f("stiction_n", self.stiction_n),
-            coulomb_n: f("coulomb_n", self.coulomb_n),
-            stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
-            damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
-            viscous_n_s_per_m: self.viscous_n_s_per_m.map(|sigma| f("viscous_n_s_per_m", sigma)),
-            stribeck_velocity_m_per_s: f("stribeck_velocity_m_per_s", v_s),
-            engagement_length_m: f("engagement_length_m", self.engagement_length_m),
-            residual_n: f("residual_n", self.residual_n),
+            stiction_n: f(Name::of("stiction_n"), self.stiction_n),
+            coulomb_n: f(Name::of("coulomb_n"), self.coulomb_n),
+            stiffness_n_per_m: f(Name::of("stiffness_n_per_m"), self.stiffness_n_per_m),
+            damping_n_s_per_m: f(Name::of("damping_n_s_per_m"), self.damping_n_s_per_m),
+            viscous_n_s_per_m: self.viscous_n_s_per_m.map(|sigma| f(Name::of("viscous_n_s_per_m"), sigma)),
+            stribeck_velocity_m_per_s: f(Name::of("stribeck_velocity_m_per_s"), v_s),
+            engagement_length_m: f(Name::of("engagement_length_m"), self.engagement_length_m),
+            residual_n: f(Name::of("residual_n"), self.residual_n),
             damping_velocity_m_per_s: self
                 .damping_velocity_m_per_s
-                .map(|v_d| f("damping_velocity_m_per_s", v_d)),
-            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
+                .map(|v_d| f(Name::of("damping_velocity_m_per_s"), v_d)),
+            backward_ratio: self.backward_ratio.map(|ratio| f(Name::of("backward_ratio"), ratio)),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The two-region law that the paper designs its controller with.
 
 use super::{Bristle, JointState, engaged_level};
+use crate::name::Name;
 use crate::real::Real;
 
 /// Bristle spring and damper while stuck, Coulomb force while sliding: equation (9).
@@ -34,15 +35,15 @@ pub struct TwoRegion<R> {
 
 impl<R: Real> TwoRegion<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TwoRegion<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoRegion<S> {
         TwoRegion {
-            stiction_n: f("stiction_n", self.stiction_n),
-            coulomb_n: f("coulomb_n", self.coulomb_n),
-            stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
-            damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
-            engagement_length_m: f("engagement_length_m", self.engagement_length_m),
-            residual_n: f("residual_n", self.residual_n),
-            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
+            stiction_n: f(Name::of("stiction_n"), self.stiction_n),
+            coulomb_n: f(Name::of("coulomb_n"), self.coulomb_n),
+            stiffness_n_per_m: f(Name::of("stiffness_n_per_m"), self.stiffness_n_per_m),
+            damping_n_s_per_m: f(Name::of("damping_n_s_per_m"), self.damping_n_s_per_m),
+            engagement_length_m: f(Name::of("engagement_length_m"), self.engagement_length_m),
+            residual_n: f(Name::of("residual_n"), self.residual_n),
+            backward_ratio: self.backward_ratio.map(|ratio| f(Name::of("backward_ratio"), ratio)),
         }
     }
 
