@@ -414,7 +414,7 @@ impl<R: Real> Extraction<R> {
 
     /// Integrates over one period with a command held.
     #[inline(always)]
-    fn move_plant(
+    pub fn move_plant(
         &self,
         state: &mut ExtractionState<R>,
         command: &Command<R>,

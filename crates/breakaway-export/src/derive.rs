@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::graph::{Builder, Graph, Label, Node, NodeId};
+use crate::passes::without_dead;
 use crate::program::{Routine, Slot};
 
 /// What follows from parameters alone.
@@ -10,8 +11,6 @@ use crate::program::{Routine, Slot};
 pub struct Derivation {
     /// From parameters to derived numbers, which are its outputs: `derived/0` and so on.
     pub graph: Graph,
-    /// The label of each of them.
-    pub labels: Vec<Label>,
 }
 
 /// Takes what depends on parameters only out of routines.
@@ -131,10 +130,7 @@ impl Derived {
         for (slot, &id) in self.slots.iter().enumerate() {
             self.builder.output(format!("derived/{slot}"), id);
         }
-        let graph = self.builder.finish();
-        let graph = crate::passes::without_dead(&graph);
-        let labels = graph.outputs().iter().map(|(_, id)| graph.labels()[id.index()]).collect();
-        Derivation { graph, labels }
+        Derivation { graph: without_dead(&self.builder.finish()) }
     }
 }
 

@@ -29,6 +29,7 @@ pub mod model;
 pub mod passes;
 pub mod program;
 mod record_model;
+pub mod reference;
 
 pub use expr::{Expr, ExprMask, Recorder, record};
 pub use model::What;

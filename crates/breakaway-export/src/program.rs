@@ -103,6 +103,10 @@ pub struct Program {
     pub routines: Vec<Routine>,
 }
 
+/// Parameters that random draws depend on.
+const OF_DRAWS: [&str; 3] =
+    ["disturbance.bandwidth_hz", "disturbance.hold_s", "timing.control_period_s"];
+
 impl Program {
     /// Records a part of an extraction, for code in numbers `R`.
     ///
@@ -132,12 +136,15 @@ impl Program {
                 routine.graph.outputs().iter().any(|(name, _)| Slot::parse(name) == *slot)
             })
         };
+        let draws = read(&Slot::Signal("draw".into()));
         let given = |names: &[&str], keep: &dyn Fn(&str) -> bool| {
             names.iter().filter(|name| keep(name)).map(ToString::to_string).collect::<Vec<_>>()
         };
         Self {
             what,
-            parameters: kept(parameters(extraction), |path| read(&Slot::Parameter(path.into()))),
+            parameters: kept(parameters(extraction), |path| {
+                read(&Slot::Parameter(path.into())) || (draws && OF_DRAWS.contains(&path))
+            }),
             states: kept(states, |path| read(&Slot::State(path.into()))),
             inputs: given(what.inputs(), &|name| read(&Slot::Input(name.into()))),
             outputs: given(what.outputs(), &|name| written(&Slot::Output(name.into()))),

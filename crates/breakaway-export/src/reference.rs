@@ -108,10 +108,9 @@ impl<R: Scalar> Rig<R> {
 
     fn looped(&mut self, sample: u64) -> Vec<R> {
         let draws = Draws { disturbance: self.draw(sample), noise: self.noise(sample) };
-        let before = self.state.sampling.samples;
+        // A sample does not tell the whole command: it is decided once more, on a copy.
+        let (command, _, _) = model::begin_loop(&self.extraction, &mut self.state.clone(), draws);
         let sample = self.extraction.step(&mut self.state, draws);
-        debug_assert!(before < self.state.sampling.samples);
-        let command = self.command_of(&sample);
         let plant = &self.state.plant;
         let moved = [
             plant.position_m,
@@ -121,7 +120,7 @@ impl<R: Scalar> Rig<R> {
             sample.joint_force_n,
         ];
         let decided =
-            [sample.reference_m, sample.command_n, command[0], command[1], sample.stop_reason];
-        [&decided[..], &moved].concat()
+            [command.force_n, command.feed_m_per_s, command.stack_share, sample.stop_reason];
+        [&[sample.reference_m][..], &decided, &moved].concat()
     }
 }

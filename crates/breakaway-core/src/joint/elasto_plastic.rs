@@ -2,7 +2,7 @@
 
 use super::onset::slip_onset;
 use super::{At, Bristle, Lugre};
-use crate::name::{Name, within};
+use crate::name::Name;
 use crate::real::Real;
 
 /// LuGre friction whose bristle gives back all of its first stretch.
@@ -33,7 +33,7 @@ impl<R: Real> ElastoPlastic<R> {
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ElastoPlastic<S> {
         ElastoPlastic {
-            friction: within!("friction", self.friction, f),
+            friction: self.friction.map(f),
             elastic_share: f(Name::of("elastic_share"), self.elastic_share),
         }
     }

@@ -4,7 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::{At, Lugre};
-use crate::name::{Name, within};
+use crate::name::Name;
 use crate::real::Real;
 
 /// The most elements that a Maxwell-slip joint can have.
@@ -161,7 +161,7 @@ impl<R: Real> Gms<R> {
     /// level shares.
     pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Gms<S> {
         Gms {
-            friction: within!("friction", self.friction, f),
+            friction: self.friction.map(f),
             attraction_n_per_s: f(Name::of("attraction_n_per_s"), self.attraction_n_per_s),
             elements: self.elements,
             stiffness_shares: self.stiffness_shares.map(|share| f(Name::of("stiffness_shares"), share)),

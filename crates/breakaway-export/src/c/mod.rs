@@ -9,7 +9,7 @@ use breakaway_core::{Extraction, Real};
 
 pub use print::Body;
 
-use crate::c::names::{Taken, described};
+use crate::c::names::{Taken, called};
 use crate::expr::{Expr, record};
 use crate::graph::Graph;
 use crate::model::What;
@@ -136,13 +136,9 @@ pub fn code(program: &Program, precision: Precision) -> Code {
     let derived: Vec<DerivedNumber> = graph
         .outputs()
         .iter()
-        .zip(&program.derivation.labels)
-        .map(|((_, id), label)| {
-            let name = label.name.map_or_else(|| described(graph, *id, &none), String::from);
-            DerivedNumber {
-                name: taken.unlike(&name),
-                formula: print::formula(graph, precision, *id),
-            }
+        .map(|(_, id)| DerivedNumber {
+            name: called(graph, *id, &none, &mut taken),
+            formula: print::formula(graph, precision, *id),
         })
         .collect();
     let names: Vec<String> = derived.iter().map(|one| one.name.clone()).collect();

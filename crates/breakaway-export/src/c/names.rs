@@ -50,8 +50,12 @@ impl Taken {
 
     /// The name, or the name with a number where it is taken; it is taken from now on.
     pub(crate) fn unlike(&mut self, name: &str) -> String {
-        let numbered = (2..).map(|n| format!("{name}_{n}"));
-        let mut names = std::iter::once(name.to_string()).chain(numbered);
+        if self.0.insert(name.to_string()) { name.to_string() } else { self.numbered(name, 2) }
+    }
+
+    /// The name with the first number that makes it unlike all others.
+    pub(crate) fn numbered(&mut self, name: &str, first: usize) -> String {
+        let mut names = (first..).map(|n| format!("{name}_{n}"));
         let free = names.find(|name| !self.0.contains(name)).expect("numbers do not run out");
         self.0.insert(free.clone());
         free
@@ -61,16 +65,24 @@ impl Taken {
 /// The longest name that is made of what a number is computed from.
 const LONGEST: usize = 40;
 
-/// What a node without a name is called: the name of what it is computed from, or of its section and
-/// a number.
-pub(crate) fn described(graph: &Graph, id: NodeId, names: &[Option<String>]) -> String {
-    let described = description(graph, id, names, 0).filter(|text| text.len() <= LONGEST);
-    described.unwrap_or_else(|| {
-        let section = graph.labels()[id.index()].section.unwrap_or("step");
-        let title = section.split(':').next().unwrap_or(section);
-        let word = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
-        title.chars().map(word).collect::<String>() + "_1"
-    })
+/// Names a node: as it was named, by what it is computed from, or by its section and a number.
+pub(crate) fn called(
+    graph: &Graph,
+    id: NodeId,
+    names: &[Option<String>],
+    taken: &mut Taken,
+) -> String {
+    let label = graph.labels()[id.index()];
+    if let Some(name) = label.name {
+        return taken.unlike(name);
+    }
+    if let Some(name) = description(graph, id, names, 0).filter(|text| text.len() <= LONGEST) {
+        return taken.unlike(&name);
+    }
+    let section = label.section.unwrap_or("step");
+    let title = section.split(':').next().unwrap_or(section);
+    let word = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+    taken.numbered(&title.chars().map(word).collect::<String>(), 1)
 }
 
 fn description(

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::c::names::{Taken, described, joined, state};
+use crate::c::names::{Taken, called, joined, state};
 use crate::c::{Precision, Used};
 use crate::graph::{Graph, Node, NodeId};
 use crate::program::Slot;
@@ -120,15 +120,9 @@ impl<'a> Printer<'a> {
                 section = label.section;
                 self.heading(section.unwrap_or("step"));
             }
-            let name = match label.name {
-                Some(name) => name.to_string(),
-                None => described(self.graph, NodeId::at(i), &self.names),
-            };
-            let name = self.taken.unlike(&name);
+            let name = called(self.graph, NodeId::at(i), &self.names, &mut self.taken);
             let kind = if node.is_condition() { "bool".into() } else { self.real() };
-            let bare = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
-            let bare = bare.filter(|inner| balanced(inner)).unwrap_or(&text).to_string();
-            _ = writeln!(self.text, "    const {kind} {name} = {bare};");
+            _ = writeln!(self.text, "    const {kind} {name} = {};", bare(&text));
             (self.texts[i], self.names[i]) = (name.clone(), Some(name));
         }
     }
@@ -137,10 +131,7 @@ impl<'a> Printer<'a> {
         self.heading("results");
         for (name, id) in self.graph.outputs() {
             let place = self.place(&Slot::parse(name));
-            let text = &self.texts[id.index()];
-            let bare = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
-            let bare = bare.filter(|inner| balanced(inner)).unwrap_or(text).to_string();
-            _ = writeln!(self.text, "    {place} = {bare};");
+            _ = writeln!(self.text, "    {place} = {};", bare(&self.texts[id.index()]));
         }
     }
 
