@@ -93,7 +93,8 @@ impl<R: Real> Disturbance<R> {
     /// The factors for a held draw.
     #[inline(always)]
     pub fn factors(&self, draws: Draws<R>) -> Factors<R> {
-        let factor = R::one() + self.var * draws.disturbance;
+        R::section("disturbance: 1 + var w");
+        let factor = (R::one() + self.var * draws.disturbance).named("factor");
         match self.acts_on {
             DisturbedQuantity::JointForce => {
                 Factors { joint_force: factor, friction_level: R::one() }

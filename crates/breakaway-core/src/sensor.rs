@@ -65,16 +65,18 @@ impl<R: Real> Sensor<R> {
     /// What it shows of `value` at a sample, with the draw `w`.
     #[inline(always)]
     pub fn read(&self, state: &mut SensorState<R>, value: R, w: R, period_s: R) -> R {
+        R::section("sensor: s = q round((y + sigma w) / q), y low-passed");
         let seen = match self.bandwidth_hz {
             Some(hertz) => {
                 let per_s = R::constant(-2.0 * core::f64::consts::PI) * hertz;
-                let share = R::one() - (per_s * period_s).exp();
-                state.filtered = share.mul_add(value - state.filtered, state.filtered);
+                let share = (R::one() - (per_s * period_s).exp()).named("bandwidth_share");
+                state.filtered =
+                    share.mul_add(value - state.filtered, state.filtered).named("filtered");
                 state.filtered
             }
             None => value,
         };
-        let noisy = self.noise_rms.mul_add(w, seen);
+        let noisy = self.noise_rms.mul_add(w, seen).named("noisy");
         let shown = match self.quantum {
             Some(q) => q * (noisy / q).round(),
             None => noisy,

@@ -1,6 +1,8 @@
 //! Hands recorded steps to Python as text, and runs the core for what they have to give.
 
-use breakaway_export::c::{Body, Code, Precision, code, exp2_bodies, names, round_constant};
+use breakaway_export::c::{
+    Body, Code, Precision, code, draw_bodies, exp2_bodies, names, round_constant,
+};
 use breakaway_export::reference::{Seeded, reference};
 use breakaway_export::{Program, What};
 use pyo3::buffer::PyBuffer;
@@ -67,6 +69,10 @@ fn bodies(
     dict.set_item("routines", routines)?;
     dict.set_item("exp2_fraction", fraction.text)?;
     dict.set_item("exp2_power", power.text)?;
+    let draws = draw_bodies(what.prefix());
+    let draws: Vec<_> =
+        draws.into_iter().map(|(name, arguments, body)| (name, arguments, body.text)).collect();
+    dict.set_item("draw_functions", draws)?;
     dict.set_item("round", round_constant(precision))
 }
 

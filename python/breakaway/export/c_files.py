@@ -182,8 +182,30 @@ def _draws(recording: Recording) -> dict[str, Any]:
         "seed": recording.scenario.seed,
         "two_to_minus_52": repr(2.0**-52),
         "per_deviation": repr(1.0 / 209.02152903595637),
-        "variate_arguments": "",
+        "two_to_minus_53": repr(2.0**-53),
+        "beyond": repr(3.167124183311992e-5),
+        "bias_less_root": f"UINT64_C(0x{_BIAS_LESS_ROOT:016X})",
+        "variate_arguments": "p, r, " if disturbance.law == "band_limited" else "",
+        "draw_functions": [
+            (name, arguments)
+            for name, arguments, _ in recording.draw_functions
+            if name in ("ln_of_parts", "quantile_middle", "quantile_tail")
+        ],
+        "draw_texts": {name: text for name, _, text in recording.draw_functions},
+        "draw_titles": DRAW_TITLES,
     }
+
+
+_BIAS_LESS_ROOT = 0x3FF0_0000_0000_0000 - 0x3FE6_A09E_667F_3BCD
+"""Bits of 1 less those of the root of 1/2."""
+
+DRAW_TITLES = {
+    "ln_of_parts": "ln(2^k m) = k ln 2 + 2 artanh s, s = (m - 1) / (m + 1).",
+    "quantile_middle": "The quantile where it is q from 1/2, at most 0.425.",
+    "quantile_tail": "The distance of the quantile from 0 in a tail, by r = sqrt(-ln p).",
+    "kept": "What low-passed noise keeps from one draw to the next: exp(-2 pi f hold).",
+}
+"""Functions of the random draws -> what they do."""
 
 
 def _noisy(recording: Recording) -> bool:

@@ -45,7 +45,8 @@ def types_of(recording: Recording) -> Types:
 
 def member(prefix: str, one: Variable) -> str:
     """Declare a member of a structure, with what it is."""
-    unit = "" if one.unit == "1" else f" In {one.unit}."
+    said = one.unit == "1" or f"in {one.unit}" in one.description
+    unit = "" if said else f" In {one.unit}."
     text = one.description if one.description.endswith(".") else f"{one.description}."
     return "\n".join([*_comment(f"{text}{unit}"), f"    {prefix}_real {one.name};"])
 

@@ -48,6 +48,8 @@ class Recording:
     routines: list[Routine]
     helpers: dict[str, str]
     """Bodies and constants of helper functions."""
+    draw_functions: list[tuple[str, list[str], str]]
+    """Name, arguments and body of what random draws compute with numbers."""
 
     @property
     def uses(self) -> frozenset[str]:
@@ -73,6 +75,7 @@ def record(resolved: Scenario, what: What, real: Real) -> Recording:
         derive=_body(found["derive"]),
         routines=[Routine(name, times, _body(body)) for name, times, body in found["routines"]],
         helpers={name: found[name] for name in ("exp2_fraction", "exp2_power", "round")},
+        draw_functions=found["draw_functions"],
     )
 
 

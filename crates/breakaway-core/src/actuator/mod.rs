@@ -231,7 +231,8 @@ impl<R: Real> Actuator<R> {
         match self {
             Self::Ideal => Driven::rigid(command.force_n),
             Self::PushOnly(actuator) => {
-                let force_n = actuator.range().limit(command.force_n);
+                R::section("push-only actuator: 0 <= F <= F_max");
+                let force_n = actuator.range().limit(command.force_n).named("pushed_n");
                 let mut driven = Driven::rigid(force_n);
                 let missed = force_n.lt(command.force_n) | command.force_n.lt(force_n);
                 driven.effort.saturated_s = R::select(missed, h, R::zero());

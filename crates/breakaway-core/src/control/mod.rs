@@ -52,7 +52,7 @@ impl<R: Real> Measurement<R> {
     /// e = r − x in m.
     #[inline(always)]
     pub fn error_m(&self) -> R {
-        self.reference_m - self.position_m
+        (self.reference_m - self.position_m).named("error_m")
     }
 }
 

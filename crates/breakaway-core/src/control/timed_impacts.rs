@@ -210,10 +210,12 @@ impl<R: Real> TimedImpacts<R> {
     #[inline(always)]
     pub fn step(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) -> Command<R> {
         self.look(state, measured);
+        R::section("impacts: cut when (x - x_0) + kappa v >= Delta, or fruitless at the ceiling");
         let seen = self.velocity(&state.window_m, measured.period_s);
         let n = &mut state.numbers;
-        let stretched = n.start_m + n.recoil_m + self.travel_min_m;
+        let stretched = (n.start_m + n.recoil_m + self.travel_min_m).named("stretched_m");
         let v = R::select(stretched.lt(measured.position_m), seen, R::zero());
+        let v = v.named("seen_m_per_s");
         let rising = !n.coasting.is_set() & !n.free.is_set();
         let known = R::zero().lt(n.ceiling_n);
         let spent = known & n.ceiling_n.le(n.force_n) & v.lt(self.slowing_m_per_s);
@@ -231,6 +233,7 @@ impl<R: Real> TimedImpacts<R> {
     /// Takes a sample in: window, clocks, the modeled force.
     #[inline(always)]
     fn look(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) {
+        R::section("impacts, sample: window of positions, clocks, modeled force");
         let (x, period) = (measured.position_m, measured.period_s);
         let first = state.numbers.seen.lt(R::constant(0.5));
         for i in (1..WINDOW).rev() {
@@ -244,11 +247,11 @@ impl<R: Real> TimedImpacts<R> {
         n.force_n = R::select(first, self.force_start_n, n.force_n);
         n.lead_s = R::select(first, self.lead_start_s, n.lead_s);
         n.step_m = R::select(first, self.step_min_m, n.step_m);
-        n.elapsed_s = n.elapsed_s + period;
-        n.in_cycle_s = n.in_cycle_s + period;
-        let share = period / (self.actuator_lag_s + period);
-        n.modeled_n = share.mul_add(n.force_n - n.modeled_n, n.modeled_n);
-        n.peak_n = n.peak_n.max(n.modeled_n);
+        n.elapsed_s = (n.elapsed_s + period).named("elapsed_s");
+        n.in_cycle_s = (n.in_cycle_s + period).named("in_cycle_s");
+        let share = (period / (self.actuator_lag_s + period)).named("lag_share");
+        n.modeled_n = share.mul_add(n.force_n - n.modeled_n, n.modeled_n).named("modeled_n");
+        n.peak_n = n.peak_n.max(n.modeled_n).named("peak_n");
         let [w0, w1, w2, ..] = state.window_m;
         let beyond = (self.travel_m + self.free_margin_m) * R::constant(3.0);
         n.free = R::select(beyond.le(w0 + w1 + w2), R::one(), n.free);
@@ -257,39 +260,45 @@ impl<R: Real> TimedImpacts<R> {
     /// v̂ in m/s.
     #[inline(always)]
     fn velocity(&self, window: &[R; WINDOW], period_s: R) -> R {
+        R::section("impacts, velocity: largest slope over 3, 5 and 8 positions, less its noise");
         let c = |value: f64| R::constant(value);
         let [w0, w1, w2, w3, w4, w5, w6, w7] = *window;
-        let noise = self.noise_margin * self.noise_rms_m;
+        let noise = (self.noise_margin * self.noise_rms_m).named("noise_m");
         let three = c(0.5) * (w0 - w2) - noise * c(0.707_106_781_186_547_5);
         let five = c(0.1) * (c(2.0) * (w0 - w4) + (w1 - w3)) - noise * c(0.316_227_766_016_837_9);
         let eight = c(1.0 / 84.0)
             * (c(7.0) * (w0 - w7) + c(5.0) * (w1 - w6) + c(3.0) * (w2 - w5) + (w3 - w4))
             - noise * c(0.154_303_349_962_091_9);
-        three.max(five).max(eight).max(R::zero()) / period_s
+        let (three, five) = (three.named("slope_of_3_m"), five.named("slope_of_5_m"));
+        let slope_m = three.max(five).max(eight.named("slope_of_8_m")).max(R::zero());
+        (slope_m.named("slope_m") / period_s).named("slope_m_per_s")
     }
 
     /// Whether the force must be cut now.
     #[inline(always)]
     fn slips(&self, n: &ImpactNumbers<R>, x: R, v: R) -> R::Mask {
-        let travel = x - n.start_m;
+        let travel = (x - n.start_m).named("travel_m");
         n.step_m.le(n.lead_s.mul_add(v, travel)) & (n.recoil_m + self.travel_min_m).lt(travel)
     }
 
     #[inline(always)]
     fn grown(&self, n: &ImpactNumbers<R>, v: R, measured: &Measurement<R>) -> R {
+        R::section("impacts, rise: F = F (1 + b T_s / tau), b = clip(1 - (v - v_1) / (v_2 - v_1), 0, 1)");
         let (zero, one) = (R::zero(), R::one());
-        let range = self.holding_m_per_s - self.slowing_m_per_s;
-        let b = (one - (v - self.slowing_m_per_s) / range).clamp(zero, one);
+        let range = (self.holding_m_per_s - self.slowing_m_per_s).named("slowing_range_m_per_s");
+        let b = (one - (v - self.slowing_m_per_s) / range).clamp(zero, one).named("growth");
         let known = zero.lt(n.ceiling_n);
         let tau = R::select(known, self.rise_time_constant_s, self.search_time_constant_s);
-        let grown = n.force_n * (b * measured.period_s / tau + one);
-        let limited = measured.range.limit(grown);
+        let tau = tau.named("time_constant_s");
+        let grown = (n.force_n * (b * measured.period_s / tau + one)).named("grown_n");
+        let limited = measured.range.limit(grown).named("limited_n");
         R::select(known, limited.min(n.ceiling_n.max(n.force_n)), limited)
     }
 
     /// Coasts until the part rests; then plans the next cycle.
     #[inline(always)]
     fn coast(&self, n: &mut ImpactNumbers<R>, measured: &Measurement<R>) {
+        R::section("impacts, coast: until means over ten samples agree within d");
         let (zero, one) = (R::zero(), R::one());
         let coasting = n.coasting.is_set();
         let count = R::constant(MEAN_SAMPLES);
@@ -297,7 +306,7 @@ impl<R: Real> TimedImpacts<R> {
         n.mean_count = R::select(coasting, n.mean_count + one, zero);
         n.mean_sum_m = R::select(coasting, n.mean_sum_m + measured.position_m, zero);
         let full = coasting & count.le(n.mean_count);
-        let mean = n.mean_sum_m / count;
+        let mean = (n.mean_sum_m / count).named("position_mean_m");
         let agrees = (mean - n.mean_m).abs().lt(self.settled_m);
         n.mean_m = R::select(full, mean, n.mean_m);
         n.mean_count = R::select(full, zero, n.mean_count);
@@ -310,23 +319,26 @@ impl<R: Real> TimedImpacts<R> {
     /// The cycle after this one, from where the part rests.
     #[inline(always)]
     fn next_cycle(&self, n: &ImpactNumbers<R>) -> ImpactNumbers<R> {
+        R::section("impacts, next cycle: C = C (1 + p clip((Delta - s) / Delta, -3, 1))");
         let (zero, one) = (R::zero(), R::one());
         let share = R::constant(NEW_SHARE);
         let slipped = n.seen_to_slip.is_set();
         let beyond = n.step_m.lt(n.furthest_m - n.start_m);
         let factor = R::select(beyond, R::constant(LEAD_UP), R::constant(LEAD_DOWN));
-        let lead = (n.lead_s * factor).clamp(self.lead_min_s, self.lead_max_s);
+        let lead = (n.lead_s * factor).clamp(self.lead_min_s, self.lead_max_s).named("adapted_s");
         let recoil = share.mul_add((n.furthest_m - n.mean_m) - n.recoil_m, n.recoil_m);
+        let recoil = recoil.named("recoil_m");
         let first = n.ceiling_n.le(zero);
         let followed = self.breakaway_share.mul_add(n.peak_n - n.ceiling_n, n.ceiling_n);
-        let base = R::select(slipped, followed, n.ceiling_n);
-        let missing = (n.step_m - (n.furthest_m - n.start_m)) / n.step_m;
+        let base = R::select(slipped, followed.named("followed_n"), n.ceiling_n).named("base_n");
+        let missing = ((n.step_m - (n.furthest_m - n.start_m)) / n.step_m).named("missing_share");
         let correction = self.probe_ratio * missing.clamp(-R::constant(MOST_DOWN), one);
-        let ceiling = R::select(first, n.peak_n, base * (one + correction));
-        let mean_cycle = share.mul_add(n.in_cycle_s - n.cycle_s, n.cycle_s);
-        let cycle = R::select(first, R::constant(FIRST_CYCLE_S), mean_cycle);
-        let left_s = (self.target_s - n.elapsed_s).max(cycle);
-        let needed = (self.travel_m - n.mean_m) / left_s * cycle + recoil;
+        let ceiling = R::select(first, n.peak_n, base * (one + correction.named("correction")));
+        let ceiling = ceiling.named("next_ceiling_n");
+        let mean_cycle = share.mul_add(n.in_cycle_s - n.cycle_s, n.cycle_s).named("mean_cycle_s");
+        let cycle = R::select(first, R::constant(FIRST_CYCLE_S), mean_cycle).named("cycle_s");
+        let left_s = (self.target_s - n.elapsed_s).max(cycle).named("left_s");
+        let needed = ((self.travel_m - n.mean_m) / left_s * cycle + recoil).named("needed_m");
         ImpactNumbers {
             coasting: zero,
             force_n: self.restart_ratio * ceiling,

@@ -78,6 +78,7 @@ impl<R: Real> TwoStep<R> {
     /// The force in N at a sample. Both steps are computed; what the other one moved is dropped.
     #[inline(always)]
     pub(super) fn step(&self, state: &mut ControllerState<R>, measured: &Measurement<R>) -> R {
+        R::section("supervisor: loose once x > breakaway travel");
         let before = state.vibration;
         let was_vibrating = before.vibrating.is_set();
         let vibrating = was_vibrating | self.breakaway_travel_m.lt(measured.position_m);
@@ -106,9 +107,10 @@ impl<R: Real> TwoStep<R> {
                 hit
             }
         };
+        R::section("supervisor: what moves is that of the step it is in");
         state.vibration = VibrationState::select(vibrating, &two, &one);
         state.vibration.vibrating = R::flag(vibrating);
-        R::select(vibrating, hit, push)
+        R::select(vibrating, hit, push).named("two_step_n")
     }
 
     /// The speed in m/s that the part is meant to have: that of the step it is in.

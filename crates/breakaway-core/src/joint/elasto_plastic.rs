@@ -46,7 +46,7 @@ impl<R: Real> ElastoPlastic<R> {
         let (v, k) = (at.velocity_m_per_s, at.ahead_s);
         let bristle = self.yielding(self.friction.freeze(at), z, v);
         let g = bristle.friction_level_n;
-        let z_ahead = g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g);
+        let z_ahead = (g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g)).named("ahead_m");
         self.yielding(bristle, z_ahead, v)
     }
 

@@ -116,7 +116,7 @@ impl<R: Real> Lugre<R> {
     #[inline(always)]
     pub fn damping(&self, v: R) -> R {
         match self.damping_velocity_m_per_s {
-            Some(v_d) => self.damping_n_s_per_m * bell(v, v_d),
+            Some(v_d) => (self.damping_n_s_per_m * bell(v, v_d)).named("damping_n_s_per_m"),
             None => self.damping_n_s_per_m,
         }
     }
@@ -139,7 +139,8 @@ impl<R: Real> Lugre<R> {
 /// exp(−(v / scale)²) as 2^(v² s) with s = −log₂ e / scale², which does not change during a run.
 #[inline(always)]
 fn bell<R: Real>(v: R, scale: R) -> R {
-    (v * v * (-R::constant(LOG2_E) / (scale * scale))).exp2()
+    let per_square = (-R::constant(LOG2_E) / (scale * scale)).named("bell_s2_per_m2");
+    (v * v * per_square).named("bell_exponent").exp2()
 }
 
 /// The Stribeck curve g(v, x) in N of the levels [F_s0, F_c0] and F_end, multiplied by `factor`:
@@ -154,9 +155,11 @@ pub(super) fn stribeck_level<R: Real>(
     v: R,
     factor: R,
 ) -> R {
-    let coulomb = engaged_level(coulomb_n, end_n, length_m, factor, x);
-    let seated_peak = stiction_n - coulomb_n;
-    let peak = engaged_level(seated_peak, R::zero(), length_m, factor, x);
-    let (fraction, power) = (v * v * (-R::constant(LOG2_E) / (v_s * v_s))).exp2_parts();
-    fraction.mul_add(peak * power, coulomb)
+    R::section("friction level: g = F_c(x) + (F_s(x) - F_c(x)) exp(-(v / v_s)^2), equation (3)");
+    let coulomb = engaged_level(coulomb_n, end_n, length_m, factor, x).named("coulomb_n");
+    let seated_peak = (stiction_n - coulomb_n).named("seated_peak_n");
+    let peak = engaged_level(seated_peak, R::zero(), length_m, factor, x).named("peak_n");
+    let per_square = (-R::constant(LOG2_E) / (v_s * v_s)).named("stribeck_s2_per_m2");
+    let (fraction, power) = (v * v * per_square).named("stribeck_exponent").exp2_parts();
+    fraction.mul_add(peak * power, coulomb).named("level_n")
 }

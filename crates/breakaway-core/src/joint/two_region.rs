@@ -68,17 +68,19 @@ impl<R: Real> TwoRegion<R> {
         v: R,
         level_factor: R,
     ) -> JointState<R> {
-        let direction = state.bristle_m.sign();
+        R::section("two regions: breaks loose at k_e |z| > F_s(x), catches when v turns");
+        let direction = state.bristle_m.sign().named("direction");
         let level_factor = match self.backward_ratio {
             Some(ratio) => level_factor * R::select(direction.lt(R::zero()), ratio, R::one()),
             None => level_factor,
         };
-        let elastic = (self.stiffness_n_per_m * state.bristle_m).abs();
+        let elastic = (self.stiffness_n_per_m * state.bristle_m).abs().named("elastic_n");
         let slips_on = state.sliding.is_set() & R::zero().lt(v * direction);
         let breaks = !state.sliding.is_set() & (self.stiction(x) * level_factor).lt(elastic);
         let engaged = x.lt(self.engagement_length_m);
         let sliding = engaged & (slips_on | breaks);
         let slip_deflection = direction * self.coulomb(x) * level_factor / self.stiffness_n_per_m;
+        let slip_deflection = slip_deflection.named("slip_deflection_m");
         JointState {
             bristle_m: R::select(
                 engaged,

@@ -4,6 +4,7 @@
 pub mod names;
 mod print;
 
+use breakaway_batch::{draws, normal};
 use breakaway_core::exp2::{exp2_parts_in_double, exp2_parts_in_single};
 use breakaway_core::{Extraction, Real};
 
@@ -155,10 +156,15 @@ pub fn code(program: &Program, precision: Precision) -> Code {
 }
 
 /// The bodies of the two parts of 2ʸ: the fraction, and the number whose lowest bits become the exponent
-/// of the power. Their input is `y`, their output what is returned.
+/// of the power. Their argument is `y`; the power's is left in `power.number`.
 #[must_use]
 pub fn exp2_bodies(precision: Precision, prefix: &str) -> [Body; 2] {
-    let part = |fraction: bool| {
+    let real = format!("{prefix}_real");
+    exp2_parts(precision).map(|graph| print::function_body(&graph, precision, prefix, &real))
+}
+
+fn exp2_parts(precision: Precision) -> [Graph; 2] {
+    [true, false].map(|fraction| {
         let graph = record(|recorder| {
             let y = recorder.input("signal/y");
             let (f, power) = match precision {
@@ -167,9 +173,8 @@ pub fn exp2_bodies(precision: Precision, prefix: &str) -> [Body; 2] {
             };
             recorder.output("output/result", if fraction { f } else { power });
         });
-        print::body(&precision.simplify(&graph), precision, prefix, &[])
-    };
-    [part(true), part(false)]
+        precision.simplify(&graph)
+    })
 }
 
 /// 1.5·2⁵² or 1.5·2²³, which rounds.
@@ -179,4 +184,32 @@ pub fn round_constant(precision: Precision) -> String {
         Precision::Single => <f32 as Real>::ROUND,
         Precision::Double => <f64 as Real>::ROUND,
     })
+}
+
+/// Bodies of what random draws compute with numbers, in `double`, recorded from the core's own: each
+/// by its name, with the names of its arguments.
+#[must_use]
+pub fn draw_bodies(prefix: &str) -> Vec<(&'static str, Vec<&'static str>, Body)> {
+    let stem = format!("{prefix}_draw");
+    let function = |name, arguments: Vec<&'static str>, of: fn(&[Expr]) -> Expr| {
+        let graph = record(|recorder| {
+            let numbers: Vec<_> =
+                arguments.iter().map(|name| recorder.input(format!("signal/{name}"))).collect();
+            recorder.output("output/result", of(&numbers));
+        });
+        let graph = simplify::<f64>(&graph);
+        (name, arguments, print::function_body(&graph, Precision::Double, &stem, "double"))
+    };
+    let [fraction, power] = exp2_parts(Precision::Double);
+    let exp2 = |name, graph| {
+        (name, vec!["y"], print::function_body(&graph, Precision::Double, &stem, "double"))
+    };
+    vec![
+        function("ln_of_parts", vec!["m", "k"], |x| normal::ln_of_parts(x[0], x[1])),
+        function("quantile_middle", vec!["q"], |x| normal::quantile_middle(x[0])),
+        function("quantile_tail", vec!["r"], |x| normal::quantile_tail(x[0])),
+        exp2("exp2_fraction", fraction),
+        exp2("exp2_power", power),
+        function("kept", vec!["bandwidth_hz", "hold_s"], |x| draws::kept(x[0], x[1])),
+    ]
 }

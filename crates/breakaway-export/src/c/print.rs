@@ -28,6 +28,28 @@ pub(crate) fn body(graph: &Graph, precision: Precision, prefix: &str, derived: &
     Body { text: printer.text, used: printer.used }
 }
 
+/// Prints a function of numbers: its inputs are its arguments, and it ends by returning its output.
+pub(crate) fn function_body(
+    graph: &Graph,
+    precision: Precision,
+    prefix: &str,
+    real: &str,
+) -> Body {
+    let mut printer = Printer::new(graph, precision, prefix, &[]);
+    printer.real = real.into();
+    for (i, node) in graph.nodes().iter().enumerate() {
+        if let Node::Input(n) = node {
+            let name = Slot::parse(&graph.inputs()[*n as usize]).name().to_string();
+            let name = printer.taken.unlike(&name);
+            (printer.texts[i], printer.names[i]) = (name.clone(), Some(name));
+        }
+    }
+    printer.computes();
+    let (_, result) = &graph.outputs()[0];
+    _ = writeln!(printer.text, "    return {};", bare(&printer.texts[result.index()]));
+    Body { text: printer.text, used: printer.used }
+}
+
 /// What a derived number is, as a formula for a comment.
 pub(crate) fn formula(graph: &Graph, precision: Precision, id: NodeId) -> String {
     let mut printer = Printer::new(graph, precision, "", &[]);
@@ -47,6 +69,8 @@ struct Printer<'a> {
     graph: &'a Graph,
     precision: Precision,
     prefix: &'a str,
+    /// The name of the real type.
+    real: String,
     derived: &'a [String],
     uses: Vec<usize>,
     /// What stands for each node: a local name, or an expression.
@@ -69,6 +93,7 @@ impl<'a> Printer<'a> {
             graph,
             precision,
             prefix,
+            real: format!("{prefix}_real"),
             derived,
             uses,
             texts: vec![String::new(); graph.nodes().len()],
@@ -95,7 +120,7 @@ impl<'a> Printer<'a> {
                 other => joined(other.name()),
             };
             let name = self.taken.unlike(&name);
-            let real = self.real();
+            let real = &self.real;
             _ = writeln!(self.text, "    const {real} {name} = {place};");
             (self.texts[i], self.names[i]) = (name.clone(), Some(name));
         }
@@ -118,17 +143,21 @@ impl<'a> Printer<'a> {
             }
             if label.section != section {
                 section = label.section;
-                self.heading(section.unwrap_or("step"));
+                if let Some(title) = section {
+                    self.heading(title);
+                }
             }
             let name = called(self.graph, NodeId::at(i), &self.names, &mut self.taken);
-            let kind = if node.is_condition() { "bool".into() } else { self.real() };
+            let kind = if node.is_condition() { "bool".into() } else { self.real.clone() };
             _ = writeln!(self.text, "    const {kind} {name} = {};", bare(&text));
             (self.texts[i], self.names[i]) = (name.clone(), Some(name));
         }
     }
 
     fn writes(&mut self) {
-        self.heading("results");
+        if !self.text.is_empty() {
+            self.heading("results");
+        }
         for (name, id) in self.graph.outputs() {
             let place = self.place(&Slot::parse(name));
             _ = writeln!(self.text, "    {place} = {};", bare(&self.texts[id.index()]));
@@ -138,10 +167,6 @@ impl<'a> Printer<'a> {
     fn heading(&mut self, title: &str) {
         let gap = if self.text.is_empty() { "" } else { "\n" };
         _ = writeln!(self.text, "{gap}    /* {title} */");
-    }
-
-    fn real(&self) -> String {
-        format!("{}_real", self.prefix)
     }
 
     fn place(&mut self, slot: &Slot) -> String {
