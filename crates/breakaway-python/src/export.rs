@@ -24,17 +24,22 @@ pub(crate) fn export_code<'py>(
     let program = precision.program(what, &job::read(job)?.extraction);
     let code = code(&program, precision);
     let dict = PyDict::new(py);
-    numbers(&dict, &program, precision)?;
+    numbers(&dict, &program, precision, &code)?;
     bodies(&dict, what, precision, &code)?;
     Ok(dict)
 }
 
-fn numbers(dict: &Bound<'_, PyDict>, program: &Program, precision: Precision) -> PyResult<()> {
+fn numbers(
+    dict: &Bound<'_, PyDict>,
+    program: &Program,
+    precision: Precision,
+    code: &Code,
+) -> PyResult<()> {
     let py = dict.py();
     let parameters = PyList::empty(py);
     for one in &program.parameters {
         let literal = precision.literal(one.value);
-        parameters.append((&one.path, names::joined(&one.path), one.value, literal))?;
+        parameters.append((&one.path, code.parameters.get(&one.path), one.value, literal))?;
     }
     let states = PyList::empty(py);
     for one in &program.states {

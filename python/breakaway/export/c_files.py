@@ -154,6 +154,8 @@ def _context(recording: Recording) -> dict[str, Any]:
         "show": bodies.get("show"),
         "step": _step(recording),
         "watched": watched,
+        "squares": c_text.sum_of_squares(types, recording.inputs),
+        "small_square": types.literal(_smallest_limit(recording) ** 2),
         "goes_on": _goes_on(prefix, watched=watched),
         "summary": _summary(recording),
         "literal": types.literal,
@@ -163,6 +165,11 @@ def _context(recording: Recording) -> dict[str, Any]:
         "call": lambda name, body, bound=False: c_text.call(prefix, name, body),  # noqa: ARG005
         **_draws(recording),
     }
+
+
+def _smallest_limit(recording: Recording) -> float:
+    """The magnitude that is allowed for every input."""
+    return min((one.range.maximum or 0.0 for one in recording.inputs), default=0.0)
 
 
 def _goes_on(prefix: What, *, watched: bool) -> str:

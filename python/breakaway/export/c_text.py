@@ -104,6 +104,15 @@ def call(prefix: str, name: str, body: Body) -> str:
     return f"{prefix}_{name}({', '.join(given)});"
 
 
+def sum_of_squares(types: Types, inputs: list[Variable]) -> str:
+    """The sum of the squares of the inputs; not a number, or infinite, where one of them is."""
+    text = ""
+    for one in inputs:
+        place = f"in->{one.name}"
+        text = f"fma{types.suffix}({place}, {place}, {text})" if text else f"{place} * {place}"
+    return text
+
+
 def condition(types: Types, one: Variable) -> str:
     """Say in C that a parameter is in its range."""
     bounds, place = one.range, f"p->{one.name}"

@@ -10,7 +10,8 @@ use breakaway_core::{Extraction, Real};
 
 pub use print::Body;
 
-use crate::c::names::{Taken, called};
+use crate::c::names::{ParameterNames, Taken, called};
+use crate::c::print::Members;
 use crate::expr::{Expr, record};
 use crate::graph::Graph;
 use crate::model::What;
@@ -119,6 +120,8 @@ pub struct DerivedNumber {
 /// The C of a program.
 #[derive(Clone, Debug)]
 pub struct Code {
+    /// Names of the parameters.
+    pub parameters: ParameterNames,
     /// Members of the structure of derived numbers.
     pub derived: Vec<DerivedNumber>,
     /// Computes them.
@@ -142,8 +145,11 @@ pub fn code(program: &Program, precision: Precision) -> Code {
             formula: print::formula(graph, precision, *id),
         })
         .collect();
-    let names: Vec<String> = derived.iter().map(|one| one.name.clone()).collect();
-    let body = |graph: &Graph| print::body(graph, precision, prefix, &names);
+    let members = Members {
+        parameters: ParameterNames::of(program.parameters.iter().map(|one| one.path.as_str())),
+        derived: derived.iter().map(|one| one.name.clone()).collect(),
+    };
+    let body = |graph: &Graph| print::body(graph, precision, prefix, &members);
     Code {
         derive: body(graph),
         routines: program
@@ -152,6 +158,7 @@ pub fn code(program: &Program, precision: Precision) -> Code {
             .map(|routine| (routine.name, routine.times, body(&routine.graph)))
             .collect(),
         derived,
+        parameters: members.parameters,
     }
 }
 

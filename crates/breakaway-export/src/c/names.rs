@@ -1,6 +1,6 @@
 //! Names in C.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::graph::{Graph, Node, NodeId};
 use crate::program::Slot;
@@ -15,6 +15,46 @@ use crate::program::Slot;
 #[must_use]
 pub fn joined(path: &str) -> String {
     path.replace('.', "_")
+}
+
+/// The names of parameters in C, by their paths.
+#[derive(Clone, Debug, Default)]
+pub struct ParameterNames(BTreeMap<String, String>);
+
+impl ParameterNames {
+    /// Joined paths; where two come to the same, the deeper one is told by its last field first.
+    ///
+    /// # Example
+    /// ```
+    /// use breakaway_export::c::names::ParameterNames;
+    /// let names = ParameterNames::of(["a.b_c", "a.b.c", "a.d"]);
+    /// assert_eq!([names.get("a.b_c"), names.get("a.b.c")], ["a_b_c", "c_of_a_b"]);
+    /// ```
+    pub fn of<'a>(paths: impl IntoIterator<Item = &'a str>) -> Self {
+        let mut by_name: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+        for path in paths {
+            by_name.entry(joined(path)).or_default().push(path);
+        }
+        let mut names = BTreeMap::new();
+        for (name, mut paths) in by_name {
+            paths.sort_by_key(|path| path.matches('.').count());
+            names.insert(paths[0].to_string(), name);
+            for path in &paths[1..] {
+                let (rest, last) = path.rsplit_once('.').expect("the deeper has a parent");
+                names.insert((*path).to_string(), format!("{last}_of_{}", joined(rest)));
+            }
+        }
+        Self(names)
+    }
+
+    /// The name of one of them.
+    ///
+    /// # Panics
+    /// If it is none of them.
+    #[must_use]
+    pub fn get(&self, path: &str) -> &str {
+        &self.0[path]
+    }
 }
 
 /// The name of a state in C: its path without `controller` or `sampling`, which say nothing there.
@@ -99,7 +139,10 @@ fn description(
     match graph.nodes()[id.index()] {
         Node::Input(n) => {
             let slot = Slot::parse(&graph.inputs()[n as usize]);
-            slot.name().rsplit('.').next().map(String::from)
+            let is_place = |part: &str| part.starts_with(|c: char| c.is_ascii_digit());
+            let parts: Vec<_> = slot.name().split('.').collect();
+            let last = parts.iter().rposition(|part| !is_place(part))?;
+            Some(parts[last..].join("_"))
         }
         Node::Constant(bits) => whole(bits.value()),
         _ if depth > 1 => None,

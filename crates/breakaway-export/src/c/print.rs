@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::c::names::{Taken, called, joined, state};
+use crate::c::names::{ParameterNames, Taken, called, joined, state};
 use crate::c::{Precision, Used};
 use crate::graph::{Graph, Node, NodeId};
 use crate::program::Slot;
@@ -19,9 +19,18 @@ pub struct Body {
     pub used: Used,
 }
 
-/// Prints a routine. `derived` are the names of the derived numbers in C.
-pub(crate) fn body(graph: &Graph, precision: Precision, prefix: &str, derived: &[String]) -> Body {
-    let mut printer = Printer::new(graph, precision, prefix, derived);
+/// Names of members of structures in C.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Members {
+    /// Of the parameters.
+    pub(crate) parameters: ParameterNames,
+    /// Of the derived numbers, by their place.
+    pub(crate) derived: Vec<String>,
+}
+
+/// Prints a routine.
+pub(crate) fn body(graph: &Graph, precision: Precision, prefix: &str, names: &Members) -> Body {
+    let mut printer = Printer::new(graph, precision, prefix, names);
     printer.reads();
     printer.computes();
     printer.writes();
@@ -35,7 +44,8 @@ pub(crate) fn function_body(
     prefix: &str,
     real: &str,
 ) -> Body {
-    let mut printer = Printer::new(graph, precision, prefix, &[]);
+    let none = Members::default();
+    let mut printer = Printer::new(graph, precision, prefix, &none);
     printer.real = real.into();
     for (i, node) in graph.nodes().iter().enumerate() {
         if let Node::Input(n) = node {
@@ -52,7 +62,8 @@ pub(crate) fn function_body(
 
 /// What a derived number is, as a formula for a comment.
 pub(crate) fn formula(graph: &Graph, precision: Precision, id: NodeId) -> String {
-    let mut printer = Printer::new(graph, precision, "", &[]);
+    let none = Members::default();
+    let mut printer = Printer::new(graph, precision, "", &none);
     for i in 0..=id.index() {
         let of = NodeId::at(i);
         let text = match graph.nodes()[i] {
@@ -71,7 +82,7 @@ struct Printer<'a> {
     prefix: &'a str,
     /// The name of the real type.
     real: String,
-    derived: &'a [String],
+    members: &'a Members,
     uses: Vec<usize>,
     /// What stands for each node: a local name, or an expression.
     texts: Vec<String>,
@@ -83,7 +94,7 @@ struct Printer<'a> {
 }
 
 impl<'a> Printer<'a> {
-    fn new(graph: &'a Graph, precision: Precision, prefix: &'a str, derived: &'a [String]) -> Self {
+    fn new(graph: &'a Graph, precision: Precision, prefix: &'a str, members: &'a Members) -> Self {
         let mut uses = vec![0; graph.nodes().len()];
         for node in graph.nodes() {
             node.operands().for_each(|id| uses[id.index()] += 1);
@@ -94,7 +105,7 @@ impl<'a> Printer<'a> {
             precision,
             prefix,
             real: format!("{prefix}_real"),
-            derived,
+            members,
             uses,
             texts: vec![String::new(); graph.nodes().len()],
             names: vec![None; graph.nodes().len()],
@@ -173,12 +184,12 @@ impl<'a> Printer<'a> {
         match slot {
             Slot::Parameter(path) => {
                 self.used.parameters = true;
-                format!("p->{}", joined(path))
+                format!("p->{}", self.members.parameters.get(path))
             }
             Slot::Derived(number) => {
                 self.used.derived = true;
                 let number: usize = number.parse().expect("the number of a derived number");
-                format!("d->{}", self.derived[number])
+                format!("d->{}", self.members.derived[number])
             }
             Slot::State(path) => {
                 self.used.state = true;
