@@ -10,7 +10,7 @@ import pytest
 from tests.export.conftest import CONTROLLERS, LENGTH_M, LOOPS, PLANTS, compiled, same_bits
 
 REALS = ("double", "float")
-CONTROLLER_STEPS = 12_000
+CONTROLLER_STEPS = 13_000
 PLANT_STEPS = 10_000
 LOOP_STEPS = 2_000
 

@@ -135,8 +135,8 @@ def parameter(scenario: Scenario, path: str, name: str, value: float, literal: s
 
 def state(path: str, name: str, value: float, literal: str) -> Variable:
     """Describe a state by its path in the state of the core."""
-    block, _, last = path.rpartition(".")
-    return Variable(name, path, unit_of(last), f"State of {block}: {last}.", value, literal)
+    block, _, last = path.partition(".")
+    return Variable(name, path, unit_of(path), f"State of the {block}: {last}.", value, literal)
 
 
 def _in_scenario(path: str) -> str:
