@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from tests.export.conftest import CONTROLLERS, LENGTH_M, LOOPS, PLANTS, compiled, same_bits
+from tests.export.compiling import compiled, same_bits
+from tests.export.kinds import CONTROLLERS, LENGTH_M, LOOPS, PLANTS
 
 REALS = ("double", "float")
 CONTROLLER_STEPS = 13_000

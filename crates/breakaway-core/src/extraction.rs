@@ -256,11 +256,7 @@ impl<R: Real> Period<R> {
     /// The forces of all steps as means; `share` is 1 over their number.
     #[inline(always)]
     pub fn mean(&self, share: R) -> Self {
-        Self {
-            force_n: self.force_n * share,
-            joint_force_n: self.joint_force_n * share,
-            ..*self
-        }
+        Self { force_n: self.force_n * share, joint_force_n: self.joint_force_n * share, ..*self }
     }
 
     /// Applies `f` to every number.

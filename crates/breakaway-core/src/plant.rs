@@ -327,7 +327,9 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let v = state.velocity_m_per_s;
         let &Midpoint { k, k_over_m, q, engaged } = at;
         let (zero, half) = (R::zero(), R::constant(0.5));
-        R::section("rigid joint: the force that stops the part within the step, limited to the level");
+        R::section(
+            "rigid joint: the force that stops the part within the step, limited to the level",
+        );
         let sigma = R::select(engaged, rigid.viscous_n_s_per_m.unwrap_or(zero), zero);
         let viscous = q.mul_add(sigma, R::one()).named("viscous");
         let level = R::select(engaged, rigid.level_n, zero);

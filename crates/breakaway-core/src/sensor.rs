@@ -112,7 +112,10 @@ pub struct Sensors<R> {
 impl<R: Real> Sensors<R> {
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensors<S> {
-        Sensors { position: within!("position", self.position, f), force: within!("force", self.force, f) }
+        Sensors {
+            position: within!("position", self.position, f),
+            force: within!("force", self.force, f),
+        }
     }
 }
 
@@ -133,7 +136,10 @@ impl<R: Real> SensorsState<R> {
 
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SensorsState<S> {
-        SensorsState { position: within!("position", self.position, f), force: within!("force", self.force, f) }
+        SensorsState {
+            position: within!("position", self.position, f),
+            force: within!("force", self.force, f),
+        }
     }
 }
 

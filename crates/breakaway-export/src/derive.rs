@@ -19,10 +19,9 @@ pub struct Derivation {
 /// Conditions stay, their operands do not: derived numbers are all of one type.
 pub(crate) fn derive(routines: Vec<Routine>) -> (Vec<Routine>, Derivation) {
     let mut derived = Derived::default();
-    let routines = routines.into_iter().map(|routine| Routine {
-        graph: derived.taken_out_of(&routine.graph),
-        ..routine
-    });
+    let routines = routines
+        .into_iter()
+        .map(|routine| Routine { graph: derived.taken_out_of(&routine.graph), ..routine });
     let routines = routines.collect();
     (routines, derived.finish())
 }
@@ -98,9 +97,8 @@ impl Derived {
             return;
         }
         let (node, label) = (graph.nodes()[id.index()], graph.labels()[id.index()]);
-        let leaf = |id: NodeId| {
-            matches!(graph.nodes()[id.index()], Node::Input(_) | Node::Constant(_))
-        };
+        let leaf =
+            |id: NodeId| matches!(graph.nodes()[id.index()], Node::Input(_) | Node::Constant(_));
         let stays = match node {
             Node::Neg(a) => leaf(a),
             _ => node.is_condition() || leaf(id),

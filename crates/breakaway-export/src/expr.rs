@@ -161,7 +161,7 @@ impl Recorder {
     ///     let two = recorder.constant(2.0);
     ///     recorder.output("two", two);
     /// });
-    /// assert_eq!(graph.evaluate(&[]), [2.0]);
+    /// assert_eq!(graph.evaluate::<f64>(&[]), [2.0]);
     /// ```
     #[must_use]
     pub fn constant(&self, value: f64) -> Expr {

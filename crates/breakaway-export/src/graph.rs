@@ -244,7 +244,7 @@ impl Graph {
     ///     let x = recorder.input("x");
     ///     recorder.output("exp", x.exp());
     /// });
-    /// assert_eq!(graph.evaluate(&[0.3])[0].to_bits(), Real::exp(0.3_f64).to_bits());
+    /// assert_eq!(graph.evaluate(&[0.3_f64])[0].to_bits(), Real::exp(0.3_f64).to_bits());
     /// assert_eq!(graph.evaluate(&[0.3_f32])[0].to_bits(), Real::exp(0.3_f32).to_bits());
     /// ```
     #[must_use]

@@ -21,9 +21,9 @@
 //! ```
 #![forbid(unsafe_code)]
 
-pub mod expr;
 pub mod c;
 pub mod derive;
+pub mod expr;
 pub mod graph;
 pub mod model;
 pub mod passes;
@@ -32,6 +32,6 @@ mod record_model;
 pub mod reference;
 
 pub use expr::{Expr, ExprMask, Recorder, record};
+pub use graph::{Bits, Graph, Label, Node, NodeId};
 pub use model::What;
 pub use program::Program;
-pub use graph::{Bits, Graph, Label, Node, NodeId};

@@ -127,9 +127,11 @@ impl Program {
         let routines = reduce::<R>(record_model(what, extraction, velocity), &states);
         let (routines, derivation) = derive(routines);
         let read = |slot: &Slot| {
-            routines.iter().map(|routine| &routine.graph).chain([&derivation.graph]).any(|graph| {
-                graph.inputs().iter().any(|name| Slot::parse(name) == *slot)
-            })
+            routines
+                .iter()
+                .map(|routine| &routine.graph)
+                .chain([&derivation.graph])
+                .any(|graph| graph.inputs().iter().any(|name| Slot::parse(name) == *slot))
         };
         let written = |slot: &Slot| {
             routines.iter().any(|routine| {
@@ -160,9 +162,9 @@ impl Program {
 fn reads_velocity<R: Scalar>(extraction: &Extraction<f64>, states: &[Value]) -> bool {
     let unwatched = Extraction { watch: None, ..*extraction };
     let routines = reduce::<R>(record_model(What::Controller, &unwatched, true), states);
-    routines.iter().any(|routine| {
-        routine.graph.inputs().iter().any(|name| name == "input/velocity_m_per_s")
-    })
+    routines
+        .iter()
+        .any(|routine| routine.graph.inputs().iter().any(|name| name == "input/velocity_m_per_s"))
 }
 
 fn kept(values: Vec<Value>, keep: impl Fn(&str) -> bool) -> Vec<Value> {

@@ -207,19 +207,10 @@ fn begin_loop(
     (command, factors)
 }
 
-fn end_loop(
-    recorder: &mut Recorder,
-    state: &mut ExtractionState<Expr>,
-    period: &Period<Expr>,
-) {
+fn end_loop(recorder: &mut Recorder, state: &mut ExtractionState<Expr>, period: &Period<Expr>) {
     let [applied_force_n, joint_force_n] = model::end(state, period);
     let plant = &state.plant;
-    let numbers = [
-        plant.position_m,
-        plant.velocity_m_per_s,
-        plant.bristle_m,
-        applied_force_n,
-        joint_force_n,
-    ];
+    let numbers =
+        [plant.position_m, plant.velocity_m_per_s, plant.bristle_m, applied_force_n, joint_force_n];
     outputs(recorder, &What::Loop.outputs()[5..], &numbers);
 }

@@ -71,9 +71,7 @@ impl<R: Scalar> Rig<R> {
         for (n, row) in (0..).zip(inputs) {
             let row = row.map(R::constant);
             rows.push(match what {
-                What::Controller => {
-                    model::control(&self.extraction, &mut self.state, row).to_vec()
-                }
+                What::Controller => model::control(&self.extraction, &mut self.state, row).to_vec(),
                 What::Plant => self.plant(n, row),
                 What::Loop => self.looped(n),
             });

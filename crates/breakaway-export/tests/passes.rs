@@ -107,7 +107,12 @@ fn outputs<R: Scalar>(graph: &Graph, of: &dyn Fn(&str) -> f64) -> Vec<(String, u
         let value: f64 = value.into();
         if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() }
     };
-    graph.outputs().iter().zip(values).map(|((name, _), value)| (name.clone(), bits(value))).collect()
+    graph
+        .outputs()
+        .iter()
+        .zip(values)
+        .map(|((name, _), value)| (name.clone(), bits(value)))
+        .collect()
 }
 
 fn is_harmless<R: Scalar>(graph: &Graph, random: &mut Random, times: usize) {

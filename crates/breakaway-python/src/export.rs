@@ -56,12 +56,7 @@ fn numbers(
     )
 }
 
-fn bodies(
-    dict: &Bound<'_, PyDict>,
-    what: What,
-    precision: Precision,
-    code: &Code,
-) -> PyResult<()> {
+fn bodies(dict: &Bound<'_, PyDict>, what: What, precision: Precision, code: &Code) -> PyResult<()> {
     let py = dict.py();
     let derived: Vec<_> = code.derived.iter().map(|one| (&one.name, &one.formula)).collect();
     let routines = PyList::empty(py);

@@ -60,5 +60,7 @@ def export_c(
         return
     for path in written.files:
         say(f"wrote {path}")
-    say(f"Build and test it: cmake -S {out} -B {out}/build && cmake --build {out}/build && "
-        f"ctest --test-dir {out}/build")
+    say(
+        f"Build and test it: cmake -S {out} -B {out}/build && cmake --build {out}/build && "
+        f"ctest --test-dir {out}/build"
+    )

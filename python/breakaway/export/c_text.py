@@ -79,9 +79,7 @@ def function(prefix: str, name: str, body: Body, title: str) -> str:
         for structure in _STRUCTURES
         if structure in body.uses
     ]
-    return (
-        f"/* {title} */\nstatic void {prefix}_{name}({', '.join(taken)})\n{{\n{body.text}}}"
-    )
+    return f"/* {title} */\nstatic void {prefix}_{name}({', '.join(taken)})\n{{\n{body.text}}}"
 
 
 def _taken(prefix: str, structure: str, body: Body, *, writes: bool) -> str:

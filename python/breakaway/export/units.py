@@ -19,7 +19,7 @@ _UNITS = {
     "a": "A",
     "f": "F",
 }
-"""What a name ends with, after an underscore -> its unit; the longest counts, which is the first."""
+"""What a name ends with, after an underscore -> its unit; the first counts, the longest."""
 
 
 def unit_of(name: str) -> str:

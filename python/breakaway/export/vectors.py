@@ -59,7 +59,9 @@ def likely_inputs(recording: Recording) -> NDArray[np.float64]:
         scales = (1.5 * recording.scenario.joint.stiction_n, 0.01, 1.0)
     columns = []
     for place, (name, scale) in enumerate(zip(names, scales, strict=True)):
-        before = np.concatenate([[0.0], loop[name]]) if recording.what == "controller" else loop[name]
+        before = (
+            np.concatenate([[0.0], loop[name]]) if recording.what == "controller" else loop[name]
+        )
         traverse = scale * (np.arange(third) + 0.3 * _spread(third, place)) / third
         jumps = scale * (1.5 * _spread(third, place + 3) - 0.4)
         columns.append(np.concatenate([before[:third], traverse, jumps]))
@@ -72,7 +74,8 @@ def likely_inputs(recording: Recording) -> NDArray[np.float64]:
 def _spread(count: int, place: int) -> NDArray[np.float64]:
     """Numbers that fill 0 to 1 evenly: no generator whose versions differ."""
     step = (2.0**0.5, 3.0**0.5, 5.0**0.5, 7.0**0.5, 11.0**0.5, 13.0**0.5)[place]
-    return (np.arange(1, count + 1) * step) % 1.0
+    spread: NDArray[np.float64] = (np.arange(1, count + 1) * step) % 1.0
+    return spread
 
 
 def bits(values: Sequence[float] | NDArray[np.float64], real: Real) -> list[str]:

@@ -174,7 +174,10 @@ pub struct VibratingPid<R> {
 impl<R: Real> VibratingPid<R> {
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> VibratingPid<S> {
-        VibratingPid { pid: within!("pid", self.pid, f), vibration: within!("vibration", self.vibration, f) }
+        VibratingPid {
+            pid: within!("pid", self.pid, f),
+            vibration: within!("vibration", self.vibration, f),
+        }
     }
 }
 

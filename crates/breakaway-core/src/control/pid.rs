@@ -144,7 +144,9 @@ impl<R: Real> Pid<R> {
             gains: within!("gains", self.gains, f),
             derivative_of: self.derivative_of,
             velocity_from: self.velocity_from,
-            derivative_filter_s: self.derivative_filter_s.map(|tau| f(Name::of("derivative_filter_s"), tau)),
+            derivative_filter_s: self
+                .derivative_filter_s
+                .map(|tau| f(Name::of("derivative_filter_s"), tau)),
             anti_windup: self.anti_windup,
             tracking_time_s: f(Name::of("tracking_time_s"), self.tracking_time_s),
         }
@@ -237,7 +239,9 @@ impl<R: Real> Pid<R> {
         sensed: &PidState<R>,
         measured: &Measurement<R>,
     ) -> R {
-        R::section("hand-over: I = I_from + (kp_from - kp) e + (kd_from - kd) d_from + kd (d_from - d)");
+        R::section(
+            "hand-over: I = I_from + (kp_from - kp) e + (kd_from - kd) d_from + kd (d_from - d)",
+        );
         let (to, d) = (&self.gains, last.derivative_m_per_s);
         let bump = (from.kp_n_per_m - to.kp_n_per_m) * measured.error_m()
             + (from.kd_n_s_per_m - to.kd_n_s_per_m) * d

@@ -283,7 +283,9 @@ impl<R: Real> TimedImpacts<R> {
 
     #[inline(always)]
     fn grown(&self, n: &ImpactNumbers<R>, v: R, measured: &Measurement<R>) -> R {
-        R::section("impacts, rise: F = F (1 + b T_s / tau), b = clip(1 - (v - v_1) / (v_2 - v_1), 0, 1)");
+        R::section(
+            "impacts, rise: F = F (1 + b T_s / tau), b = clip(1 - (v - v_1) / (v_2 - v_1), 0, 1)",
+        );
         let (zero, one) = (R::zero(), R::one());
         let range = (self.holding_m_per_s - self.slowing_m_per_s).named("slowing_range_m_per_s");
         let b = (one - (v - self.slowing_m_per_s) / range).clamp(zero, one).named("growth");

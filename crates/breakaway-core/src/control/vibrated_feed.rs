@@ -69,7 +69,10 @@ impl<R: Real> VibratedFeedState<R> {
 impl<R: Real> VibratedFeed<R> {
     /// Applies `f` to every number.
     pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> VibratedFeed<S> {
-        VibratedFeed { feed: within!("feed", self.feed, f), pulses: within!("pulses", self.pulses, f) }
+        VibratedFeed {
+            feed: within!("feed", self.feed, f),
+            pulses: within!("pulses", self.pulses, f),
+        }
     }
 
     /// The command at a sample.

@@ -69,7 +69,8 @@ impl<R: Real> Watch<R> {
         let jumped = began & self.jump_max_m.lt((x - state.last_m).abs());
         let same = began & x.le(state.last_m) & state.last_m.le(x);
         let pushed_s = R::select(pushing, measured.period_s, zero);
-        state.unchanged_s = R::select(same, state.unchanged_s + pushed_s, zero).named("unchanged_s");
+        state.unchanged_s =
+            R::select(same, state.unchanged_s + pushed_s, zero).named("unchanged_s");
         let frozen = self.frozen_max_s.lt(state.unchanged_s);
         let clock = !zero.lt(measured.period_s);
         let number = |value: f64| R::constant(value);

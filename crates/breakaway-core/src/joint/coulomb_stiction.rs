@@ -45,7 +45,9 @@ impl<R: Real> CoulombStiction<R> {
         CoulombStiction {
             stiction_n: f(Name::of("stiction_n"), self.stiction_n),
             coulomb_n: f(Name::of("coulomb_n"), self.coulomb_n),
-            viscous_n_s_per_m: self.viscous_n_s_per_m.map(|sigma| f(Name::of("viscous_n_s_per_m"), sigma)),
+            viscous_n_s_per_m: self
+                .viscous_n_s_per_m
+                .map(|sigma| f(Name::of("viscous_n_s_per_m"), sigma)),
             stribeck_velocity_m_per_s: f(Name::of("stribeck_velocity_m_per_s"), v_s),
             engagement_length_m: f(Name::of("engagement_length_m"), self.engagement_length_m),
             residual_n: f(Name::of("residual_n"), self.residual_n),

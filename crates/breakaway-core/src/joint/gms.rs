@@ -164,7 +164,9 @@ impl<R: Real> Gms<R> {
             friction: self.friction.map(f),
             attraction_n_per_s: f(Name::of("attraction_n_per_s"), self.attraction_n_per_s),
             elements: self.elements,
-            stiffness_shares: self.stiffness_shares.map(|share| f(Name::of("stiffness_shares"), share)),
+            stiffness_shares: self
+                .stiffness_shares
+                .map(|share| f(Name::of("stiffness_shares"), share)),
             level_shares: self.level_shares.map(|share| f(Name::of("level_shares"), share)),
         }
     }
@@ -250,8 +252,7 @@ impl<R: Real> Elements<'_, R> {
         let viscous = law.friction.viscous_n_s_per_m.unwrap_or(zero);
         out.force_at_rest_n =
             per_stretch.mul_add(offset, -(c_over_k * mean)).named("force_at_rest_n");
-        out.resistance_n_s_per_m =
-            per_stretch.mul_add(gain, viscous).named("resistance_n_s_per_m");
+        out.resistance_n_s_per_m = per_stretch.mul_add(gain, viscous).named("resistance_n_s_per_m");
         out
     }
 

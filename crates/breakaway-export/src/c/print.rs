@@ -38,12 +38,7 @@ pub(crate) fn body(graph: &Graph, precision: Precision, prefix: &str, names: &Me
 }
 
 /// Prints a function of numbers: its inputs are its arguments, and it ends by returning its output.
-pub(crate) fn function_body(
-    graph: &Graph,
-    precision: Precision,
-    prefix: &str,
-    real: &str,
-) -> Body {
+pub(crate) fn function_body(graph: &Graph, precision: Precision, prefix: &str, real: &str) -> Body {
     let none = Members::default();
     let mut printer = Printer::new(graph, precision, prefix, &none);
     printer.real = real.into();
@@ -146,8 +141,7 @@ impl<'a> Printer<'a> {
             }
             let text = self.expression(node);
             let leaf = matches!(node, Node::Constant(_));
-            let stated = !leaf
-                && (self.uses[i] > 1 || label.name.is_some() || text.len() > INLINE);
+            let stated = !leaf && (self.uses[i] > 1 || label.name.is_some() || text.len() > INLINE);
             if !stated {
                 self.texts[i] = text;
                 continue;

@@ -167,11 +167,12 @@ fn a_recorded_step_has_the_bits_of_the_step() {
 fn the_value_of_a_dual_has_the_bits_of_the_scalar_run() {
     for case in cases::all() {
         let mut run = scalar(&case, 0);
-        let mut dual = Run::<Dual<f64, 2>>::new(&run.extraction, &mut |name, value| match name.field() {
-            "stiction_n" => Dual::variable(value, 0),
-            "kp_n_per_m" => Dual::variable(value, 1),
-            _ => Dual::constant(value),
-        });
+        let mut dual =
+            Run::<Dual<f64, 2>>::new(&run.extraction, &mut |name, value| match name.field() {
+                "stiction_n" => Dual::variable(value, 0),
+                "kp_n_per_m" => Dual::variable(value, 1),
+                _ => Dual::constant(value),
+            });
         for n in 0..SAMPLES {
             run.step(draw(0, n));
             dual.step(cast(&draw(0, n), Dual::constant));
@@ -208,7 +209,8 @@ fn the_derivative_of_a_dual_is_the_slope_of_the_scalar_run() {
 
     for (i, parameter) in PARAMETERS.into_iter().enumerate() {
         let mut value = 0.0;
-        case.extraction.map(&mut |name, v| value = if name.field() == parameter { v } else { value });
+        case.extraction
+            .map(&mut |name, v| value = if name.field() == parameter { v } else { value });
         let change = 1e-5;
         let (above, below) = (moved(parameter, change), moved(parameter, -change));
         for (j, (name, ours)) in dual.moving().into_iter().enumerate() {
