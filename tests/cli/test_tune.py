@@ -157,11 +157,14 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
         env=os.environ | {"COLUMNS": "100"},
     )
     trials = out / "parts" / "trials.jsonl"
-    while not trials.exists() or trials.read_bytes().count(b"\n") < 3:
-        assert process.poll() is None, process.communicate()
-        time.sleep(0.01)
-    process.send_signal(signal.SIGINT)
-    stdout, stderr = process.communicate(timeout=60)
+    try:
+        while not trials.exists() or trials.read_bytes().count(b"\n") < 3:
+            assert process.poll() is None, process.communicate()
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert (process.returncode, stdout) == (130, "")
     assert stderr == (
         f"finished trials are kept; go on with: breakaway tune {path} --out {out} --resume\n"

@@ -125,6 +125,7 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
         0 => (u64::MAX, u64::MAX),
         _ => (0, job.samples - 1),
     };
+    let plain = plain_kinds(&job.extraction);
     let per_check = (STEPS_PER_CHECK / u64::from(job.extraction.timing.steps_per_period)).max(1);
     let mut n = 0;
     while n < job.samples && progress.metrics.goes_on() {
@@ -142,7 +143,10 @@ fn run_kinds<E>(job: &Job, mut keep_going: impl FnMut() -> Result<(), E>) -> Res
             (!progress.metrics.goes_on() || n == job.samples).then_some(sample)
         } else {
             let end = job.samples.min(redraw).min(next_row).min(last_row).min(check);
-            let (taken, last) = progress.advance(job, disturbance, n..end);
+            let (taken, last) = match &plain {
+                Some(plain) => progress.advance(plain, job, disturbance, n..end),
+                None => progress.advance(&job.extraction, job, disturbance, n..end),
+            };
             n = taken;
             last
         };
@@ -174,18 +178,19 @@ impl Progress {
     #[inline(always)]
     fn advance(
         &mut self,
+        extraction: &Extraction<f64>,
         job: &Job,
         disturbance: f64,
         samples: Range<u64>,
     ) -> (u64, Option<Sample<f64>>) {
-        let (extraction, limits) = (job.extraction, job.limits);
+        let (extraction, limits) = (*extraction, job.limits);
         let (mut state, mut metrics) = (self.state, self.metrics);
         metrics.bounded = 1.0; // as it is; said here, it need not be asked at every sample
         metrics.over = 0.0; // likewise
         let mut last = None;
         let mut n = samples.start;
         while n < samples.end {
-            let sample = extraction.step(&mut state, job.draws(disturbance, n));
+            let sample = extraction.step(&mut state, job.draws(&extraction, disturbance, n));
             metrics.update(Groups::ALL, &limits, &sample);
             n += 1;
             if !metrics.goes_on() {
@@ -200,7 +205,8 @@ impl Progress {
     /// Takes one sample and gives it.
     #[inline(always)]
     fn take_one(&mut self, job: &Job, disturbance: f64, n: u64) -> Sample<f64> {
-        let sample = job.extraction.step(&mut self.state, job.draws(disturbance, n));
+        let sample =
+            job.extraction.step(&mut self.state, job.draws(&job.extraction, disturbance, n));
         self.metrics.update(Groups::ALL, &job.limits, &sample);
         sample
     }
@@ -261,8 +267,8 @@ impl Job {
 
     /// The draws of a sample.
     #[inline(always)]
-    fn draws(&self, disturbance: f64, sample: u64) -> Draws<f64> {
-        if self.extraction.sensors.is_none() {
+    fn draws(&self, extraction: &Extraction<f64>, disturbance: f64, sample: u64) -> Draws<f64> {
+        if extraction.sensors.is_none() {
             return Draws { disturbance, ..Draws::none() };
         }
         let [[position], [force]] = noise(self.seed, &[self.run], sample);

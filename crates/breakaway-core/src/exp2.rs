@@ -47,6 +47,11 @@ const C64: [f64; 10] = [
     7.072585949269223e-09,
 ];
 
+#[inline(always)]
+pub(crate) fn exp2_f64(y: f64) -> (f64, f64) {
+    exp2_parts_in_double(y, |n| f64::from_bits(n.to_bits() << 52))
+}
+
 /// [`Real::exp2_parts`] for a number of single precision. What differs between them is `shift`: the
 /// bits of the number moved left by 23.
 #[inline(always)]
@@ -63,6 +68,11 @@ pub fn exp2_parts_in_single<R: Real>(y: R, shift: impl Fn(R) -> R) -> (R, R) {
     let p = p456.mul_add(f2, p23).mul_add(f2, p01);
     let limited = n.clamp(R::constant(-126.0), R::constant(127.0));
     (p, shift(limited + R::constant(ROUND + 127.0)))
+}
+
+#[inline(always)]
+pub(crate) fn exp2_f32(y: f32) -> (f32, f32) {
+    exp2_parts_in_single(y, |n| f32::from_bits(n.to_bits() << 23))
 }
 
 #[allow(clippy::approx_constant)]

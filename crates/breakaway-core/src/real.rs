@@ -230,18 +230,8 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(
-    f64,
-    6_755_399_441_055_744.0,
-    |y| exp2::exp2_parts_in_double(y, |n: f64| f64::from_bits(n.to_bits() << 52)),
-    fused::fma_f64
-);
-impl_real!(
-    f32,
-    12_582_912.0,
-    |y| exp2::exp2_parts_in_single(y, |n: f32| f32::from_bits(n.to_bits() << 23)),
-    fused::fma_f32
-);
+impl_real!(f64, 6_755_399_441_055_744.0, exp2::exp2_f64, fused::fma_f64);
+impl_real!(f32, 12_582_912.0, exp2::exp2_f32, fused::fma_f32);
 
 #[cfg(test)]
 mod tests {

@@ -48,7 +48,7 @@ impl Derived {
             }
             let operands: Vec<_> = node.operands().collect();
             for id in operands {
-                self.bring(graph, id, &alone, &there, &mut local, &mut here);
+                self.bring(graph, id, &there, &mut local, &mut here);
             }
             local[i] = Some(match node {
                 Node::Input(n) => here.input(graph.inputs()[n as usize].clone()),
@@ -59,7 +59,7 @@ impl Derived {
             });
         }
         for (name, id) in graph.outputs() {
-            self.bring(graph, *id, &alone, &there, &mut local, &mut here);
+            self.bring(graph, *id, &there, &mut local, &mut here);
             here.output(name.clone(), local[id.index()].expect("it was brought"));
         }
         here.finish()
@@ -88,7 +88,6 @@ impl Derived {
         &mut self,
         graph: &Graph,
         id: NodeId,
-        alone: &[bool],
         there: &[Option<NodeId>],
         local: &mut [Option<NodeId>],
         here: &mut Builder,
@@ -111,7 +110,7 @@ impl Derived {
             here.input_once(&graph.inputs()[n as usize])
         } else {
             for operand in node.operands() {
-                self.bring(graph, operand, alone, there, local, here);
+                self.bring(graph, operand, there, local, here);
             }
             here.labeled(node.on(|id| local[id.index()].expect("just brought")), label)
         });

@@ -116,12 +116,9 @@ def _notice(sentence: str) -> None:
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[StudyProgress], None] | None]:
+def _progress() -> Iterator[Callable[[StudyProgress], None]]:
     """Show how far the parts are, and then that figures are drawn."""
     with shown_progress() as report, ExitStack() as after:
-        if report is None:
-            yield None
-            return
         drawing = False
 
         def tell(at: StudyProgress) -> None:

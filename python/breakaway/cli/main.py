@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
+
+from breakaway.cli.interrupts import note_interrupts
 
 
 def main() -> None:
@@ -16,7 +17,7 @@ def main() -> None:
         if getattr(sys, name) is None:  # closed by the caller
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123
     try:
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        note_interrupts()
         from breakaway.cli.app import app
 
         app()

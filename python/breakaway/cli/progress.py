@@ -8,18 +8,21 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from breakaway.cli.interrupts import raise_if_interrupted
+
 if TYPE_CHECKING:
     from breakaway.studies import StudyProgress
 
 
 @contextmanager
-def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None] | None]:
+def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None]]:
     """Show on a terminal how far runs are: bar, runs, rate, time left; in pipes nothing.
 
-    The bar is there while runs are under way and not between, where other lines may be printed.
+    The bar is there while runs are under way and not between, where other lines may be printed. A
+    Ctrl-C that was lost on the way is heeded at the next report, shown or not.
     """
     if not sys.stderr.isatty():
-        yield None
+        yield lambda _at: raise_if_interrupted()
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn
@@ -34,6 +37,7 @@ def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None] |
     began = time.monotonic()
 
     def report(at: StudyProgress) -> None:
+        raise_if_interrupted()
         told = progress_in_words(at, time.monotonic() - began)
         doing = f"{name}: {at.doing}" if name else at.doing
         bar.update(task, completed=at.runs_done, total=at.runs_max, description=doing, told=told)
@@ -46,10 +50,10 @@ def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None] |
 
 
 @contextmanager
-def counted(doing: str, units: str) -> Iterator[Callable[[int, int], None] | None]:
+def counted(doing: str, units: str) -> Iterator[Callable[[int, int], None]]:
     """Show on a terminal how many of how many are done; in pipes nothing."""
     if not sys.stderr.isatty():
-        yield None
+        yield lambda _done, _total: raise_if_interrupted()
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
@@ -62,7 +66,12 @@ def counted(doing: str, units: str) -> Iterator[Callable[[int, int], None] | Non
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(doing, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+        def report(done: int, total: int) -> None:
+            raise_if_interrupted()
+            bar.update(task, completed=done, total=total)
+
+        yield report
 
 
 def progress_in_words(at: StudyProgress, elapsed_s: float) -> str:

@@ -56,7 +56,7 @@ def tune(
                 trials=trials,
                 resume=resume,
                 threads=threads,
-                progress=progress and _told(progress),
+                progress=_told(progress),
                 notice=_notice,
             )
     except (KeyboardInterrupt, OutputError):

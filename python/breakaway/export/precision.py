@@ -1,4 +1,4 @@
-"""How far the loop in float is from the loop in double: ``python -m breakaway.export.precision``."""
+"""Float against double over a loop's course: ``python -m breakaway.export.precision``."""
 
 from __future__ import annotations
 
