@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 from tests.export.compiling import compiled, same_bits
 from tests.export.kinds import CONTROLLERS, LENGTH_M, LOOPS, PLANTS
+
+import breakaway as bk
+from breakaway.scenario.actuator import Actuator
+from breakaway.scenario.controller import Controller
+from breakaway.scenario.disturbance import Disturbance
+from breakaway.scenario.joint import Joint
+from breakaway.scenario.reference import Reference
 
 REALS = ("double", "float")
 CONTROLLER_STEPS = 13_000
@@ -73,6 +81,32 @@ def test_loops(name: str, real: str, tmp_path: Path) -> None:
     ours, theirs = code.run(inputs), code.expected(inputs, run=5)
     assert same_bits(ours, theirs)
     assert np.isfinite(ours[:400]).all()
+
+
+def test_every_kind_is_among_them() -> None:
+    """A kind that is new in a scenario model has to be exported, too."""
+
+    def kinds(union: object) -> set[type]:
+        if isinstance(union, type):
+            return {union}
+        return {kind for part in get_args(union) for kind in kinds(part) if isinstance(kind, type)}
+
+    scenarios = [*CONTROLLERS.values(), *PLANTS.values()]
+    controllers = {type(one.controller) for one in scenarios}
+    two_steps = [one.controller for one in scenarios if isinstance(one.controller, bk.TwoStep)]
+    for found, union in (
+        (controllers, Controller),
+        ({type(one.joint) for one in scenarios}, Joint),
+        ({type(one.reference) for one in scenarios}, Reference),
+        ({type(one.actuator) for one in scenarios}, Actuator),
+        ({type(one.disturbance) for one in scenarios}, get_args(Disturbance)[0]),
+        ({type(one.breakaway) for one in two_steps}, {bk.Pid, bk.ForceRamp}),
+        ({type(one.vibration) for one in two_steps}, {bk.FmVibration, bk.TimedImpacts}),
+    ):
+        wanted = union if isinstance(union, set) else kinds(get_args(union)[0])
+        assert found == wanted
+    assert any(one.sensors for one in scenarios)
+    assert any(one.watch for one in scenarios)
 
 
 def test_there_are_a_million_steps() -> None:

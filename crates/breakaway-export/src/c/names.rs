@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::graph::{Graph, Node, NodeId};
+use crate::graph::{Bits, Graph, Node, NodeId};
 use crate::program::Slot;
 
 /// A path as one C identifier: dots become underscores.
@@ -122,7 +122,9 @@ pub(crate) fn called(
     let section = label.section.unwrap_or("step");
     let title = section.split(':').next().unwrap_or(section);
     let word = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
-    taken.numbered(&title.chars().map(word).collect::<String>(), 1)
+    let title: String = title.chars().map(word).collect();
+    let words: Vec<_> = title.split('_').filter(|word| !word.is_empty()).collect();
+    taken.numbered(&words.join("_"), 1)
 }
 
 fn description(
@@ -153,6 +155,7 @@ fn description(
         Node::Div(a, b) => both(a, "over", b),
         Node::Neg(a) => Some(format!("minus_{}", of(a)?)),
         Node::Abs(a) => Some(format!("magnitude_of_{}", of(a)?)),
+        Node::Lt(a, b) if is_half(graph, a) => Some(format!("{}_is_set", of(b)?)),
         Node::Lt(a, b) => both(a, "below", b),
         Node::Le(a, b) => both(a, "at_most", b),
         Node::And(a, b) => both(a, "and", b),
@@ -160,6 +163,11 @@ fn description(
         Node::Not(a) => Some(format!("not_{}", of(a)?)),
         _ => None,
     }
+}
+
+/// What a flag is compared with.
+fn is_half(graph: &Graph, id: NodeId) -> bool {
+    graph.nodes()[id.index()] == Node::Constant(Bits::of(0.5))
 }
 
 /// Small constants have names.
