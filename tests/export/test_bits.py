@@ -99,7 +99,7 @@ def test_every_kind_is_among_them() -> None:
         ({type(one.joint) for one in scenarios}, Joint),
         ({type(one.reference) for one in scenarios}, Reference),
         ({type(one.actuator) for one in scenarios}, Actuator),
-        ({type(one.disturbance) for one in scenarios}, get_args(Disturbance)[0]),
+        ({type(one.disturbance) for one in scenarios}, Disturbance),
         ({type(one.breakaway) for one in two_steps}, {bk.Pid, bk.ForceRamp}),
         ({type(one.vibration) for one in two_steps}, {bk.FmVibration, bk.TimedImpacts}),
     ):
