@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from breakaway import design
     from breakaway.batch import Batch, draw_columns, grid_columns, simulate_many
     from breakaway.comparison import Comparison, compare_methods
+    from breakaway.export import ExportedC, export_c
     from breakaway.identification import (
         BreakawayEvent,
         BreakawayReport,
@@ -139,6 +140,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "breakaway.batch": ("Batch", "draw_columns", "grid_columns", "simulate_many"),
     "breakaway.comparison": ("Comparison", "compare_methods"),
+    "breakaway.export": ("ExportedC", "export_c"),
     "breakaway.identification": (
         "BreakawayEvent",
         "BreakawayReport",
@@ -278,6 +280,7 @@ __all__ = [
     "CoulombStiction",
     "ElastoPlastic",
     "Estimate",
+    "ExportedC",
     "FeedAxis",
     "FeedSettings",
     "Finding",
@@ -364,6 +367,7 @@ __all__ = [
     "design",
     "draw_columns",
     "draw_parts",
+    "export_c",
     "find_breakaway_events",
     "fit_population",
     "grid_columns",

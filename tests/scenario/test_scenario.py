@@ -241,6 +241,7 @@ def test_resolving_keeps_what_is_given(paper):
         "limits.diverged_error_m": 0.01,
         "limits.diverged_force_n": 1000.0,
         "limits.breakaway_travel_m": 1e-4,
+        "limits.contact_force_n": 2.0,
         "controller.gains": GIVEN,
     }
     explicit = paper.with_(given_values)

@@ -13,7 +13,7 @@ use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::real::Block;
 use breakaway_core::reference::{Reference, Setpoint};
 use breakaway_core::sensor::Noise;
-use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome};
+use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Name, Outcome};
 
 use crate::draws::{HeldDraws, noise};
 use crate::figures::Figure;
@@ -233,7 +233,7 @@ impl Kernel for InLanes<'_> {
         let Self { batch, range, groups, going } = self;
         let job = &batch.common;
         let (extraction, limits) = batch.gather::<V>(&range);
-        let lane_of = |lane: usize| move |_: &'static str, value: V| value.extract(lane);
+        let lane_of = |lane: usize| move |_: Name<'_>, value: V| value.extract(lane);
         let draws = HeldDraws::<N>::new(
             job.seed,
             std::array::from_fn(|lane| batch.runs[batch.at(&range, lane)]),

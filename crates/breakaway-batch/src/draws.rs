@@ -150,6 +150,12 @@ fn open(bits: u64) -> f64 {
     (bits >> 1) as f64 * 2.0_f64.powi(-52) + 2.0_f64.powi(-53)
 }
 
+/// What noise behind a low-pass keeps of itself from one draw to the next: a = exp(-2π f_b hold).
+#[must_use]
+pub fn kept<R: Real>(bandwidth_hz: R, hold_s: R) -> R {
+    (R::constant(-std::f64::consts::TAU) * bandwidth_hz * hold_s).exp()
+}
+
 /// Largest |w| of the normal laws.
 const W_MAX: f64 = 4.0;
 /// P(w < -4) of a normal variable.
@@ -234,7 +240,7 @@ impl<const N: usize> HeldDraws<N> {
     /// w ← a w + √(1 − a²) ξ with a = exp(−2π f_b hold) and ξ normal: noise of variance 1 behind a
     /// first-order low-pass, from its first draw on.
     fn low_pass(&mut self, i: usize, bandwidth_hz: f64, bits: u64) -> f64 {
-        let a = Real::exp(-std::f64::consts::TAU * bandwidth_hz * self.hold_s[i]);
+        let a = kept(bandwidth_hz, self.hold_s[i]);
         let fresh = quantile(open(bits));
         self.low_passed[i] = match self.draws[i] {
             0 => fresh,

@@ -6,7 +6,7 @@ use breakaway_core::extraction::{Sample, Timing};
 use breakaway_core::joint::Joint;
 use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::sensor::Noise;
-use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Outcome, Real};
+use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Name, Outcome, Real};
 
 use std::ops::Range;
 
@@ -247,7 +247,7 @@ impl Job {
     /// Applies `f` to every number: those of the extraction, then those of the limits.
     pub(crate) fn map_numbers<S>(
         &self,
-        f: &mut impl FnMut(&'static str, f64) -> S,
+        f: &mut impl FnMut(Name<'_>, f64) -> S,
     ) -> (Extraction<S>, Limits<S>) {
         (self.extraction.map(f), self.limits.map(f))
     }

@@ -1,5 +1,6 @@
 //! What nobody knows about the joint force, as a random factor on it.
 
+use crate::name::Name;
 use crate::real::Real;
 use crate::sensor::Noise;
 
@@ -74,17 +75,17 @@ pub struct Disturbance<R> {
 
 impl<R: Real> Disturbance<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Disturbance<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Disturbance<S> {
         Disturbance {
             law: match self.law {
                 DrawLaw::Uniform => DrawLaw::Uniform,
                 DrawLaw::Gaussian => DrawLaw::Gaussian,
                 DrawLaw::BandLimited { bandwidth_hz } => {
-                    DrawLaw::BandLimited { bandwidth_hz: f("bandwidth_hz", bandwidth_hz) }
+                    DrawLaw::BandLimited { bandwidth_hz: f(Name::of("bandwidth_hz"), bandwidth_hz) }
                 }
             },
-            var: f("var", self.var),
-            hold_s: f("hold_s", self.hold_s),
+            var: f(Name::of("var"), self.var),
+            hold_s: f(Name::of("hold_s"), self.hold_s),
             acts_on: self.acts_on,
         }
     }
@@ -92,7 +93,8 @@ impl<R: Real> Disturbance<R> {
     /// The factors for a held draw.
     #[inline(always)]
     pub fn factors(&self, draws: Draws<R>) -> Factors<R> {
-        let factor = R::one() + self.var * draws.disturbance;
+        R::section("disturbance: 1 + var w");
+        let factor = (R::one() + self.var * draws.disturbance).named("factor");
         match self.acts_on {
             DisturbedQuantity::JointForce => {
                 Factors { joint_force: factor, friction_level: R::one() }

@@ -7,7 +7,6 @@
 //! The polynomials are Chebyshev fits of degree 10 (`f64`, relative error 2.2e-16) and 6 (`f32`,
 //! 2e-9), summed by Estrin's scheme for the same reason.
 
-use crate::fused::fma_f32;
 use crate::real::Real;
 
 /// [`Real::exp2_parts`] for a number, or several side by side, of double precision. What differs
@@ -53,20 +52,27 @@ pub(crate) fn exp2_f64(y: f64) -> (f64, f64) {
     exp2_parts_in_double(y, |n| f64::from_bits(n.to_bits() << 52))
 }
 
+/// [`Real::exp2_parts`] for a number of single precision. What differs between them is `shift`: the
+/// bits of the number moved left by 23.
 #[inline(always)]
-pub(crate) fn exp2_f32(y: f32) -> (f32, f32) {
-    const ROUND: f32 = 12_582_912.0; // 1.5·2²³
-    let n = (y + ROUND) - ROUND;
+pub fn exp2_parts_in_single<R: Real>(y: R, shift: impl Fn(R) -> R) -> (R, R) {
+    const ROUND: f64 = 12_582_912.0; // 1.5·2²³
+    let c = |i: usize| R::constant(f64::from(C32[i]));
+    let n = (y + R::constant(ROUND)) - R::constant(ROUND);
     let f = y - n;
     let f2 = f * f;
-    let p01 = fma_f32(C32[0], f, 1.0);
-    let p23 = fma_f32(C32[2], f, C32[1]);
-    let p45 = fma_f32(C32[4], f, C32[3]);
-    let p456 = fma_f32(C32[5], f2, p45);
-    let p = fma_f32(fma_f32(p456, f2, p23), f2, p01);
-    let above = if n < -126.0 { -126.0 } else { n };
-    let limited = if above > 127.0 { 127.0 } else { above };
-    (p, f32::from_bits((limited + (ROUND + 127.0)).to_bits() << 23))
+    let p01 = c(0).mul_add(f, R::one());
+    let p23 = c(2).mul_add(f, c(1));
+    let p45 = c(4).mul_add(f, c(3));
+    let p456 = c(5).mul_add(f2, p45);
+    let p = p456.mul_add(f2, p23).mul_add(f2, p01);
+    let limited = n.clamp(R::constant(-126.0), R::constant(127.0));
+    (p, shift(limited + R::constant(ROUND + 127.0)))
+}
+
+#[inline(always)]
+pub(crate) fn exp2_f32(y: f32) -> (f32, f32) {
+    exp2_parts_in_single(y, |n| f32::from_bits(n.to_bits() << 23))
 }
 
 #[allow(clippy::approx_constant)]
@@ -81,7 +87,7 @@ mod tests {
     }
 
     fn exp2_f32(y: f32) -> f32 {
-        let (fraction, power) = super::exp2_f32(y);
+        let (fraction, power) = crate::Real::exp2_parts(y);
         fraction * power
     }
 

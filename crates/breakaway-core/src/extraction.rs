@@ -4,6 +4,7 @@ use crate::actuator::{Actuator, ActuatorState, Command, Effort};
 use crate::control::{Controller, ControllerState, Measurement, Watch, WatchState};
 use crate::disturbance::{Disturbance, Draws, Factors};
 use crate::joint::Joint;
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::plant::{Integrator, Plant, PlantState};
 use crate::real::{Block, Real};
@@ -30,6 +31,18 @@ pub struct Timing<R> {
     pub integrator: Integrator,
     /// Integration steps in a control period, at least 1.
     pub steps_per_period: u32,
+}
+
+impl<R: Copy> Timing<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Timing<S> {
+        Timing {
+            control_period_s: f(Name::of("control_period_s"), self.control_period_s),
+            one_sample_delay: self.one_sample_delay,
+            integrator: self.integrator,
+            steps_per_period: self.steps_per_period,
+        }
+    }
 }
 
 impl<R> Timing<R> {
@@ -98,6 +111,17 @@ pub struct LoopState<R> {
     pub force_n: R,
 }
 
+impl<R: Copy> LoopState<R> {
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> LoopState<S> {
+        LoopState {
+            samples: f(Name::of("samples"), self.samples),
+            waiting: within!("waiting", self.waiting, f),
+            force_n: f(Name::of("force_n"), self.force_n),
+        }
+    }
+}
+
 /// What moves during an extraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtractionState<R> {
@@ -131,18 +155,14 @@ impl<R: Real> ExtractionState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ExtractionState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ExtractionState<S> {
         ExtractionState {
-            plant: self.plant.map(f),
-            actuator: self.actuator.map(f),
-            sensors: self.sensors.map(f),
-            watch: self.watch.map(f),
-            controller: self.controller.map(f),
-            sampling: LoopState {
-                samples: f("samples", self.sampling.samples),
-                waiting: self.sampling.waiting.map(f),
-                force_n: f("force_n", self.sampling.force_n),
-            },
+            plant: within!("plant", self.plant, f),
+            actuator: within!("actuator", self.actuator, f),
+            sensors: within!("sensors", self.sensors, f),
+            watch: within!("watch", self.watch, f),
+            controller: within!("controller", self.controller, f),
+            sampling: within!("sampling", self.sampling, f),
         }
     }
 }
@@ -188,44 +208,100 @@ pub struct Sample<R> {
     pub next_stored_j: R,
 }
 
-/// What went through the part in a control period.
-struct Period<R> {
-    force_n: R,
-    largest_force_n: R,
-    joint_force_n: R,
-    work_j: R,
-    joint_work_j: R,
-    effort: Effort<R>,
+/// What went through the part in a control period, or in an integration step of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Period<R> {
+    /// F in N: the mean.
+    pub force_n: R,
+    /// Largest F of an integration step, N.
+    pub largest_force_n: R,
+    /// R in N: the mean, disturbance included.
+    pub joint_force_n: R,
+    /// ∫ F dx in J.
+    pub work_j: R,
+    /// ∫ R dx in J.
+    pub joint_work_j: R,
+    /// What the actuator took.
+    pub effort: Effort<R>,
+}
+
+impl<R: Real> Period<R> {
+    /// None yet: what the steps of a period are added to.
+    #[inline(always)]
+    pub fn none() -> Self {
+        let zero = R::zero();
+        Self {
+            force_n: zero,
+            largest_force_n: zero,
+            joint_force_n: zero,
+            work_j: zero,
+            joint_work_j: zero,
+            effort: Effort::none(),
+        }
+    }
+
+    /// With one more step. The forces are sums until [`Period::mean`].
+    #[inline(always)]
+    pub fn and(&self, step: &Self) -> Self {
+        Self {
+            force_n: self.force_n + step.force_n,
+            largest_force_n: step.largest_force_n.max(self.largest_force_n),
+            joint_force_n: self.joint_force_n + step.joint_force_n,
+            work_j: self.work_j + step.work_j,
+            joint_work_j: self.joint_work_j + step.joint_work_j,
+            effort: self.effort.and(&step.effort),
+        }
+    }
+
+    /// The forces of all steps as means; `share` is 1 over their number.
+    #[inline(always)]
+    pub fn mean(&self, share: R) -> Self {
+        Self { force_n: self.force_n * share, joint_force_n: self.joint_force_n * share, ..*self }
+    }
+
+    /// Applies `f` to every number.
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Period<S> {
+        Period {
+            force_n: f(Name::of("force_n"), self.force_n),
+            largest_force_n: f(Name::of("largest_force_n"), self.largest_force_n),
+            joint_force_n: f(Name::of("joint_force_n"), self.joint_force_n),
+            work_j: f(Name::of("work_j"), self.work_j),
+            joint_work_j: f(Name::of("joint_work_j"), self.joint_work_j),
+            effort: within!("effort", self.effort, f),
+        }
+    }
 }
 
 impl<R: Real> Extraction<R> {
     /// Applies `f` to every number, for example to gather runs into lanes.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Extraction<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Extraction<S> {
         Extraction {
-            joint: self.joint.map(f),
-            part: self.part.map(f),
-            reference: self.reference.map(f),
-            disturbance: self.disturbance.map(f),
-            actuator: self.actuator.map(f),
-            sensors: self.sensors.as_ref().map(|sensors| sensors.map(f)),
-            watch: self.watch.as_ref().map(|watch| watch.map(f)),
-            controller: self.controller.map(f),
-            timing: Timing {
-                control_period_s: f("control_period_s", self.timing.control_period_s),
-                one_sample_delay: self.timing.one_sample_delay,
-                integrator: self.timing.integrator,
-                steps_per_period: self.timing.steps_per_period,
-            },
+            joint: within!("joint", self.joint, f),
+            part: within!("part", self.part, f),
+            reference: within!("reference", self.reference, f),
+            disturbance: within!("disturbance", self.disturbance, f),
+            actuator: within!("actuator", self.actuator, f),
+            sensors: self.sensors.as_ref().map(|sensors| within!("sensors", sensors, f)),
+            watch: self.watch.as_ref().map(|watch| within!("watch", watch, f)),
+            controller: within!("controller", self.controller, f),
+            timing: within!("timing", self.timing, f),
         }
     }
 
     /// One control period.
     #[inline(always)]
     pub fn step(&self, state: &mut ExtractionState<R>, draws: Draws<R>) -> Sample<R> {
-        let setpoint = self.reference.sample(state.sampling.samples * self.timing.control_period_s);
-        state.sampling.samples = state.sampling.samples + R::one();
+        let setpoint = self.next_setpoint(&mut state.sampling);
         let factors = self.disturbance.factors(draws);
         self.follow::<false>(state, &setpoint, &factors, &draws.noise)
+    }
+
+    /// What the reference asks for at this sample; moves the clock on to the next.
+    #[inline(always)]
+    pub fn next_setpoint(&self, sampling: &mut LoopState<R>) -> Setpoint<R> {
+        let time_s = (sampling.samples * self.timing.control_period_s).named("time_s");
+        sampling.samples = sampling.samples + R::one();
+        self.reference.sample(time_s)
     }
 
     /// One control period towards a setpoint that the caller has sampled from the reference, once
@@ -275,7 +351,7 @@ impl<R: Real> Extraction<R> {
 
     /// What the controller gets to see.
     #[inline(always)]
-    fn measure(
+    pub fn measure(
         &self,
         state: &mut ExtractionState<R>,
         setpoint: &Setpoint<R>,
@@ -303,7 +379,7 @@ impl<R: Real> Extraction<R> {
 
     /// The controller's command, unless the watch has stopped it.
     #[inline(always)]
-    fn decide(&self, state: &mut ExtractionState<R>, measured: &Measurement<R>) -> Command<R> {
+    pub fn decide(&self, state: &mut ExtractionState<R>, measured: &Measurement<R>) -> Command<R> {
         let decided = self.controller.step(&mut state.controller, measured);
         let Some(watch) = &self.watch else {
             return decided;
@@ -323,8 +399,9 @@ impl<R: Real> Extraction<R> {
         }
     }
 
+    /// The command that takes effect now: where a sample is late, the one before.
     #[inline(always)]
-    fn delay(&self, sampling: &mut LoopState<R>, decided: Command<R>) -> Command<R> {
+    pub fn delay(&self, sampling: &mut LoopState<R>, decided: Command<R>) -> Command<R> {
         if !self.timing.one_sample_delay {
             return decided;
         }
@@ -333,46 +410,44 @@ impl<R: Real> Extraction<R> {
 
     /// Integrates over one period with a command held.
     #[inline(always)]
-    fn move_plant(
+    pub fn move_plant(
         &self,
         state: &mut ExtractionState<R>,
         command: &Command<R>,
         factors: &Factors<R>,
     ) -> Period<R> {
-        let Timing { integrator, steps_per_period: steps, control_period_s, .. } = self.timing;
-        let (zero, share) = (R::zero(), R::constant(1.0 / f64::from(steps)));
-        let h = if steps == 1 { control_period_s } else { control_period_s * share };
-        let mut sum = Period {
-            force_n: zero,
-            largest_force_n: zero,
-            joint_force_n: zero,
-            work_j: zero,
-            joint_work_j: zero,
-            effort: Effort::none(),
-        };
+        let steps = self.timing.steps_per_period;
+        let (h, mut sum) = (self.step_s(), Period::none());
         for _ in 0..steps {
-            let step = self.move_once(state, command, factors, integrator, h);
+            let step = self.move_once(state, command, factors, h);
             if steps == 1 {
                 return step;
             }
-            sum.force_n = sum.force_n + step.force_n;
-            sum.largest_force_n = step.largest_force_n.max(sum.largest_force_n);
-            sum.joint_force_n = sum.joint_force_n + step.joint_force_n;
-            sum.work_j = sum.work_j + step.work_j;
-            sum.joint_work_j = sum.joint_work_j + step.joint_work_j;
-            sum.effort = sum.effort.and(&step.effort);
+            sum = sum.and(&step);
         }
-        Period { force_n: sum.force_n * share, joint_force_n: sum.joint_force_n * share, ..sum }
+        sum.mean(self.step_share())
+    }
+
+    /// The share of a control period that an integration step takes.
+    #[inline(always)]
+    pub fn step_share(&self) -> R {
+        R::constant(1.0 / f64::from(self.timing.steps_per_period))
+    }
+
+    /// h in s, the duration of an integration step.
+    #[inline(always)]
+    pub fn step_s(&self) -> R {
+        let period_s = self.timing.control_period_s;
+        if self.timing.steps_per_period == 1 { period_s } else { period_s * self.step_share() }
     }
 
     /// One integration step: the actuator drives, the plant solves, the actuator yields.
     #[inline(always)]
-    fn move_once(
+    pub fn move_once(
         &self,
         state: &mut ExtractionState<R>,
         command: &Command<R>,
         factors: &Factors<R>,
-        integrator: Integrator,
         h: R,
     ) -> Period<R> {
         let part_m = state.plant.position_m;
@@ -383,7 +458,7 @@ impl<R: Real> Extraction<R> {
             push: driven.push,
             factors: *factors,
         };
-        let moved = plant.step(integrator, &mut state.plant, h);
+        let moved = plant.step(self.timing.integrator, &mut state.plant, h);
         let (push, v) = (moved.push_force_n, moved.mean_velocity_m_per_s);
         let travel = v * h;
         Period {

@@ -249,7 +249,8 @@ impl<R: Real> Metrics<R> {
         self.bounded = R::flag(bounded | !going);
         self.count(wanted, limits, sample, was_bounded, bounded);
         let since_s = sample.time_s + sample.period_s - self.release_s;
-        self.over = R::flag(limits.after_release_s.le(since_s));
+        // What left its bounds is not over: a run in lanes goes on beside the others, and stays so.
+        self.over = R::flag(!going | (bounded & limits.after_release_s.le(since_s)));
     }
 
     /// Whether the run goes on: within its bounds, and not over.

@@ -13,8 +13,8 @@ macro_rules! parameters {
 
         impl<R: Copy> $name<R> {
             /// Applies `f` to every number, in declaration order, with the field's name.
-            pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> $name<S> {
-                $name { $( $field: f(stringify!($field), self.$field) ),+ }
+            pub fn map<S>(&self, f: &mut impl FnMut($crate::name::Name<'_>, R) -> S) -> $name<S> {
+                $name { $( $field: f($crate::name::Name::of(stringify!($field)), self.$field) ),+ }
             }
         }
 

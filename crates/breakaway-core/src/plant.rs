@@ -2,6 +2,7 @@
 
 use crate::disturbance::Factors;
 use crate::joint::{At, Bristle, ElementState, Elements, Frozen, JointState, Law, Rigid};
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -24,14 +25,14 @@ pub struct PlantState<R> {
 
 impl<R: Copy> PlantState<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> PlantState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> PlantState<S> {
         PlantState {
-            position_m: f("position_m", self.position_m),
-            velocity_m_per_s: f("velocity_m_per_s", self.velocity_m_per_s),
-            bristle_m: f("bristle_m", self.bristle_m),
-            sliding: f("sliding", self.sliding),
-            joint_force_n: f("joint_force_n", self.joint_force_n),
-            elements: self.elements.map(f),
+            position_m: f(Name::of("position_m"), self.position_m),
+            velocity_m_per_s: f(Name::of("velocity_m_per_s"), self.velocity_m_per_s),
+            bristle_m: f(Name::of("bristle_m"), self.bristle_m),
+            sliding: f(Name::of("sliding"), self.sliding),
+            joint_force_n: f(Name::of("joint_force_n"), self.joint_force_n),
+            elements: within!("elements", self.elements, f),
         }
     }
 }
@@ -103,8 +104,9 @@ impl<R: Real> Push<R> {
     fn meets(&self, free_m_per_s: R, mobility_m_per_n_s: R) -> R {
         match self.yielding_n_s_per_m {
             Some(s) => {
-                let stopped = s.mul_add(mobility_m_per_n_s, R::one());
-                R::zero().max((-s).mul_add(free_m_per_s, self.force_n) / stopped)
+                let stopped = s.mul_add(mobility_m_per_n_s, R::one()).named("stopped");
+                let met_n = (-s).mul_add(free_m_per_s, self.force_n) / stopped;
+                R::zero().max(met_n.named("met_n")).named("contact_n")
             }
             None => self.force_n,
         }
@@ -179,21 +181,23 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     /// takes the joint force of the step before, and the push that goes with it.
     #[inline(always)]
     fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, h: R) -> Moved<R> {
+        R::section("prediction: the velocity at the middle of the step, with the last joint force");
         let v = state.velocity_m_per_s;
-        let k = R::constant(0.5) * h;
-        let k_over_m = k / self.mass_kg;
-        let x_mid = k.mul_add(v, state.position_m);
-        let q = k_over_m * self.factors.joint_force;
+        let k = (R::constant(0.5) * h).named("half_step_s");
+        let k_over_m = (k / self.mass_kg).named("k_over_m_s_per_kg");
+        let x_mid = k.mul_add(v, state.position_m).named("middle_m");
+        let q = (k_over_m * self.factors.joint_force).named("q_s_per_kg");
         let v_predicted = match self.push.yielding_n_s_per_m {
             Some(_) => {
                 let unpushed = (-q).mul_add(state.joint_force_n, v);
                 k_over_m.mul_add(self.push.meets(unpushed, k_over_m), unpushed)
             }
             None => {
-                let w = k_over_m.mul_add(self.push.force_n, v);
+                let w = k_over_m.mul_add(self.push.force_n, v).named("w_m_per_s");
                 (-q).mul_add(state.joint_force_n, w)
             }
-        };
+        }
+        .named("predicted_m_per_s");
         let at = At {
             position_m: x_mid,
             velocity_m_per_s: v_predicted,
@@ -228,18 +232,22 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         at: &Midpoint<R>,
         b: &Bristle<R>,
     ) -> Moved<R> {
+        R::section("midpoint: v_m = [g (w - q k_e z) + k A (w + q c/k z)] / den");
         let (v, z) = (state.velocity_m_per_s, state.bristle_m);
         let &Midpoint { k, k_over_m, q, engaged } = at;
         let n = self.factors.joint_force;
         let g = b.friction_level_n;
-        let (k_e, c_over_k) = (b.stiffness_n_per_m, b.damping_n_s_per_m / k);
+        let c_over_k = (b.damping_n_s_per_m / k).named("damping_n_per_m");
+        let k_e = b.stiffness_n_per_m;
         let viscous = match b.viscous_n_s_per_m {
-            Some(sigma) => q.mul_add(sigma, R::one()), // 1 + q σ, divided out below
+            Some(sigma) => q.mul_add(sigma, R::one()).named("viscous"), // 1 + q σ, divided out below
             None => R::one(),
         };
-        let per_level = (q * k * b.stretch).mul_add(k_e + c_over_k, viscous) / viscous;
-        let slip = k * b.relaxation_n_per_m * b.speed_m_per_s; // k A
-        let two_over_den = R::constant(2.0) / viscous / g.mul_add(per_level, slip);
+        let stiff = (k_e + c_over_k).named("stiff_n_per_m");
+        let per_level = ((q * k * b.stretch).mul_add(stiff, viscous) / viscous).named("per_level");
+        let slip = (k * b.relaxation_n_per_m * b.speed_m_per_s).named("slip_n"); // k A
+        let den = g.mul_add(per_level, slip).named("den_n");
+        let two_over_den = (R::constant(2.0) / viscous / den).named("two_over_den_per_n");
         let force_n = match self.push.yielding_n_s_per_m {
             Some(_) => {
                 let half = R::constant(0.5) * two_over_den;
@@ -249,20 +257,25 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
             }
             None => self.push.force_n,
         };
-        let w = k_over_m.mul_add(force_n, v);
+        let w = k_over_m.mul_add(force_n, v).named("w_m_per_s");
         let driven = g.mul_add((q * k_e).mul_add(-z, w), slip * (q * c_over_k).mul_add(z, w));
 
-        let two_w = w + w;
-        let two_v = R::select(engaged, driven * two_over_den, two_w);
-        let lost = two_w - two_v; // 2 q R_m
-        let per_lost = R::constant(0.5) / k_over_m * (R::one() / n); // 1 / (2 q)
-        let per_force = R::one() / (k_e + c_over_k);
-        let kept = (per_force * c_over_k).mul_add(R::constant(2.0), -R::one()) * z;
+        let two_w = (w + w).named("two_w_m_per_s");
+        let two_v = R::select(engaged, driven.named("driven") * two_over_den, two_w);
+        let two_v = two_v.named("two_v_m_per_s");
+        R::section("joint force: R_m = (w - v_m) / q; bristle: z_m = (R_m + c/k z) / (k_e + c/k)");
+        let lost = (two_w - two_v).named("lost_m_per_s"); // 2 q R_m
+        let half_m_over_k = (R::constant(0.5) / k_over_m).named("half_m_over_k_kg_per_s");
+        let per_lost = (half_m_over_k * (R::one() / n)).named("per_lost_kg_per_s"); // 1 / (2 q)
+        let per_force = (R::one() / stiff).named("per_force_m_per_n");
+        let kept_share = (per_force * c_over_k).mul_add(R::constant(2.0), -R::one());
+        let kept = kept_share.named("kept_share") * z;
         let kept = match b.viscous_n_s_per_m {
             Some(sigma) => (-(per_force * sigma)).mul_add(two_v, kept),
             None => kept,
         };
-        state.bristle_m = (per_force * R::constant(2.0) * per_lost).mul_add(lost, kept);
+        let per_force = (per_force * R::constant(2.0)).named("two_per_force_m_per_n");
+        state.bristle_m = (per_force * per_lost).mul_add(lost, kept).named("bristle_m");
         self.carry(state, k, two_v, lost * per_lost, force_n)
     }
 
@@ -282,13 +295,15 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let &Midpoint { k, k_over_m, q, engaged } = at;
         let mut moving = state.elements;
         let ahead = elements.ahead(&mut moving, k);
-        let per_resisted = R::one() / q.mul_add(ahead.resistance_n_s_per_m, R::one());
-        let free = (-q).mul_add(ahead.force_at_rest_n, v) * per_resisted;
-        let mobility = k_over_m * per_resisted;
+        R::section("midpoint: v_m = (v + k F/m - q R_0) / (1 + q D)");
+        let resisted = q.mul_add(ahead.resistance_n_s_per_m, R::one()).named("resisted");
+        let per_resisted = (R::one() / resisted).named("per_resisted");
+        let free = ((-q).mul_add(ahead.force_at_rest_n, v) * per_resisted).named("free_m_per_s");
+        let mobility = (k_over_m * per_resisted).named("mobility_m_per_n_s");
         let force_n =
             R::select(engaged, self.push.meets(free, mobility), self.push.meets(v, k_over_m));
         let held = mobility.mul_add(force_n, free);
-        let v_mid = R::select(engaged, held, k_over_m.mul_add(force_n, v));
+        let v_mid = R::select(engaged, held, k_over_m.mul_add(force_n, v)).named("middle_m_per_s");
         let joint_force = ahead.resistance_n_s_per_m.mul_add(v_mid, ahead.force_at_rest_n);
         state.bristle_m = elements.finish(&ahead, &mut moving, v_mid, engaged);
         state.elements = moving;
@@ -312,20 +327,24 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let v = state.velocity_m_per_s;
         let &Midpoint { k, k_over_m, q, engaged } = at;
         let (zero, half) = (R::zero(), R::constant(0.5));
+        R::section(
+            "rigid joint: the force that stops the part within the step, limited to the level",
+        );
         let sigma = R::select(engaged, rigid.viscous_n_s_per_m.unwrap_or(zero), zero);
-        let viscous = q.mul_add(sigma, R::one());
+        let viscous = q.mul_add(sigma, R::one()).named("viscous");
         let level = R::select(engaged, rigid.level_n, zero);
         let backward_level = R::select(engaged, rigid.backward_level_n, zero);
 
         let stopping = self.push.meets(half * v, zero);
         let wanted = ((-half * viscous).mul_add(v, k_over_m.mul_add(stopping, v))) / q;
-        let friction = wanted.min(level).max(-backward_level);
+        let wanted = wanted.named("wanted_n");
+        let friction = wanted.min(level).max(-backward_level).named("friction_n");
         let slips = level.lt(wanted) | wanted.lt(-backward_level);
-        let per_viscous = R::one() / viscous;
-        let free = (-q).mul_add(friction, v) * per_viscous;
+        let per_viscous = (R::one() / viscous).named("per_viscous");
+        let free = ((-q).mul_add(friction, v) * per_viscous).named("free_m_per_s");
         let force_n = R::select(slips, self.push.meets(free, k_over_m * per_viscous), stopping);
         let sliding = (k_over_m * per_viscous).mul_add(force_n, free);
-        let two_v = R::select(slips, sliding + sliding, v);
+        let two_v = R::select(slips, sliding + sliding, v).named("two_v_m_per_s");
         state.sliding = R::flag(slips);
         let joint_force = (half * sigma).mul_add(two_v, friction);
         self.carry(state, k, two_v, joint_force, force_n)
@@ -341,9 +360,10 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         joint_force_n: R,
         push_force_n: R,
     ) -> Moved<R> {
-        state.joint_force_n = joint_force_n;
-        state.position_m = k.mul_add(two_v, state.position_m);
-        state.velocity_m_per_s = two_v - state.velocity_m_per_s;
+        R::section("motion: v = 2 v_m - v, x = x + h v_m");
+        state.joint_force_n = joint_force_n.named("joint_force_n");
+        state.position_m = k.mul_add(two_v, state.position_m).named("position_m");
+        state.velocity_m_per_s = (two_v - state.velocity_m_per_s).named("velocity_m_per_s");
         Moved {
             joint_force_n: self.factors.joint_force * joint_force_n,
             push_force_n,
@@ -373,6 +393,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
 
     #[inline(always)]
     fn rk4(&self, state: &mut PlantState<R>, h: R) -> Moved<R> {
+        R::section("Runge-Kutta of order four");
         let joint = state.joint();
         let start = [state.position_m, state.velocity_m_per_s, state.bristle_m];
         let at = |slope: &[R; 3], step: R| {

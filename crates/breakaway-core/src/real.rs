@@ -33,6 +33,15 @@ pub trait Block {
 /// assert_eq!(clip(3.0_f64), 1.0);
 /// assert_eq!(clip(-0.25_f32), -0.25);
 /// ```
+/// A branch on a number does not compile, so that whatever does can be recorded:
+/// ```compile_fail,E0308
+/// use breakaway_core::Real;
+/// fn magnitude<R: Real>(x: R) -> R { if x.lt(R::zero()) { -x } else { x } }
+/// ```
+/// ```compile_fail,E0369
+/// use breakaway_core::Real;
+/// fn larger<R: Real>(x: R, y: R) -> R { if x < y { y } else { x } }
+/// ```
 pub trait Real:
     Copy
     + Debug
@@ -76,6 +85,17 @@ pub trait Real:
     fn apart<B: Block>(block: B) -> B::Output {
         block.compute()
     }
+
+    /// Says what the number is, to numbers that keep it: a recording, whose code shall be read.
+    #[inline(always)]
+    fn named(self, _name: &'static str) -> Self {
+        self
+    }
+
+    /// Says which block's arithmetic follows, to numbers that keep it. A colon ends the block's name;
+    /// what comes after is its equation.
+    #[inline(always)]
+    fn section(_title: &'static str) {}
 
     /// Absolute value.
     fn abs(self) -> Self;

@@ -1,5 +1,6 @@
 //! Where the part should be: references from the seat to a distance, with their rate.
 
+use crate::name::Name;
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -77,7 +78,7 @@ pub enum Reference<R> {
 
 impl<R: Real> Reference<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Reference<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Reference<S> {
         match self {
             Self::Step(p) => Reference::Step(p.map(f)),
             Self::Ramp(p) => Reference::Ramp(p.map(f)),
@@ -90,7 +91,11 @@ impl<R: Real> Reference<R> {
     #[inline(always)]
     pub fn sample(&self, t: R) -> Setpoint<R> {
         let (position_m, rate_m_per_s) = match self {
-            Self::Step(p) => (R::select(t.lt(p.start_s), R::zero(), p.distance_m), R::zero()),
+            Self::Step(p) => {
+                R::section("reference: a jump to the distance");
+                let position_m = R::select(t.lt(p.start_s), R::zero(), p.distance_m);
+                (position_m.named("reference_m"), R::zero())
+            }
             Self::Ramp(p) => ramp(p, t),
             Self::MinimumJerk(p) => minimum_jerk(p, t),
             Self::TrapezoidalVelocity(p) => trapezoidal_velocity(p, t),
@@ -101,36 +106,44 @@ impl<R: Real> Reference<R> {
 
 #[inline(always)]
 fn ramp<R: Real>(p: &Motion<R>, t: R) -> (R, R) {
-    let speed = p.distance_m / p.duration_s;
-    let s = (t - p.start_s).clamp(R::zero(), p.duration_s);
+    let speed = (p.distance_m / p.duration_s).named("reference_speed_m_per_s");
+    R::section("reference: r = v t at constant speed");
+    let s = (t - p.start_s).clamp(R::zero(), p.duration_s).named("elapsed_s");
     let moving = p.start_s.le(t) & (t - p.start_s).lt(p.duration_s);
-    (speed * s, R::select(moving, speed, R::zero()))
+    let rate = R::select(moving, speed, R::zero()).named("reference_rate_m_per_s");
+    ((speed * s).named("reference_m"), rate)
 }
 
 #[inline(always)]
 fn minimum_jerk<R: Real>(p: &Motion<R>, t: R) -> (R, R) {
     let c = R::constant;
-    let tau = ((t - p.start_s) * (R::one() / p.duration_s)).clamp(R::zero(), R::one());
-    let (tau2, rest) = (tau * tau, R::one() - tau);
+    R::section("reference: r = d (10 tau^3 - 15 tau^4 + 6 tau^5), tau = (t - start) / duration");
+    let per_duration = (R::one() / p.duration_s).named("per_duration_per_s");
+    let tau = ((t - p.start_s) * per_duration).clamp(R::zero(), R::one()).named("tau");
+    let (tau2, rest) = ((tau * tau).named("tau_squared"), (R::one() - tau).named("tau_left"));
     let position = tau2 * tau * tau.mul_add(c(6.0).mul_add(tau, c(-15.0)), c(10.0));
     let rate = c(30.0) * tau2 * (rest * rest);
-    (p.distance_m * position, p.distance_m / p.duration_s * rate)
+    let mean_m_per_s = (p.distance_m / p.duration_s).named("mean_speed_m_per_s");
+    let reference_m = (p.distance_m * position.named("reference_share")).named("reference_m");
+    (reference_m, (mean_m_per_s * rate).named("reference_rate_m_per_s"))
 }
 
 #[inline(always)]
 fn trapezoidal_velocity<R: Real>(p: &Trapezoid<R>, t: R) -> (R, R) {
     let half = R::constant(0.5);
     let (v, a) = (p.velocity_m_per_s, p.acceleration_m_per_s2);
-    let ramp_s = v / a;
-    let duration_s = p.distance_m / v + ramp_s;
-    let s = (t - p.start_s).clamp(R::zero(), duration_s);
-    let left = duration_s - s;
+    R::section("reference: accelerate, cruise, brake");
+    let ramp_s = (v / a).named("ramp_s");
+    let duration_s = (p.distance_m / v + ramp_s).named("duration_s");
+    let s = (t - p.start_s).clamp(R::zero(), duration_s).named("elapsed_s");
+    let left = (duration_s - s).named("left_s");
     let (rising, falling) = (s.lt(ramp_s), left.lt(ramp_s));
-    let cruise = v * (s - half * ramp_s);
-    let braking = p.distance_m - half * a * left * left;
+    let cruise = (v * (s - half * ramp_s)).named("cruise_m");
+    let braking = (p.distance_m - half * a * left * left).named("braking_m");
     let position = R::select(falling, braking, cruise);
     let rate = R::select(falling, a * left, v);
-    (R::select(rising, half * a * s * s, position), R::select(rising, a * s, rate))
+    let reference_m = R::select(rising, half * a * s * s, position).named("reference_m");
+    (reference_m, R::select(rising, a * s, rate).named("reference_rate_m_per_s"))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What a controller gets to see of position and force.
 
+use crate::name::{Name, within};
 use crate::real::Real;
 
 /// Most samples that a sensor can be late.
@@ -42,21 +43,21 @@ impl<R: Real> SensorState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> SensorState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SensorState<S> {
         SensorState {
-            filtered: f("filtered", self.filtered),
-            late: self.late.map(|value| f("late", value)),
+            filtered: f(Name::of("filtered"), self.filtered),
+            late: self.late.map(|value| f(Name::of("late"), value)),
         }
     }
 }
 
 impl<R: Real> Sensor<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Sensor<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensor<S> {
         Sensor {
-            noise_rms: f("noise_rms", self.noise_rms),
-            quantum: self.quantum.map(|q| f("quantum", q)),
-            bandwidth_hz: self.bandwidth_hz.map(|hertz| f("bandwidth_hz", hertz)),
+            noise_rms: f(Name::of("noise_rms"), self.noise_rms),
+            quantum: self.quantum.map(|q| f(Name::of("quantum"), q)),
+            bandwidth_hz: self.bandwidth_hz.map(|hertz| f(Name::of("bandwidth_hz"), hertz)),
             delay_samples: self.delay_samples,
         }
     }
@@ -64,16 +65,18 @@ impl<R: Real> Sensor<R> {
     /// What it shows of `value` at a sample, with the draw `w`.
     #[inline(always)]
     pub fn read(&self, state: &mut SensorState<R>, value: R, w: R, period_s: R) -> R {
+        R::section("sensor: s = q round((y + sigma w) / q), y low-passed");
         let seen = match self.bandwidth_hz {
             Some(hertz) => {
                 let per_s = R::constant(-2.0 * core::f64::consts::PI) * hertz;
-                let share = R::one() - (per_s * period_s).exp();
-                state.filtered = share.mul_add(value - state.filtered, state.filtered);
+                let share = (R::one() - (per_s * period_s).exp()).named("bandwidth_share");
+                state.filtered =
+                    share.mul_add(value - state.filtered, state.filtered).named("filtered");
                 state.filtered
             }
             None => value,
         };
-        let noisy = self.noise_rms.mul_add(w, seen);
+        let noisy = self.noise_rms.mul_add(w, seen).named("noisy");
         let shown = match self.quantum {
             Some(q) => q * (noisy / q).round(),
             None => noisy,
@@ -108,8 +111,11 @@ pub struct Sensors<R> {
 
 impl<R: Real> Sensors<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Sensors<S> {
-        Sensors { position: self.position.map(f), force: self.force.map(f) }
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensors<S> {
+        Sensors {
+            position: within!("position", self.position, f),
+            force: within!("force", self.force, f),
+        }
     }
 }
 
@@ -129,8 +135,11 @@ impl<R: Real> SensorsState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> SensorsState<S> {
-        SensorsState { position: self.position.map(f), force: self.force.map(f) }
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SensorsState<S> {
+        SensorsState {
+            position: within!("position", self.position, f),
+            force: within!("force", self.force, f),
+        }
     }
 }
 

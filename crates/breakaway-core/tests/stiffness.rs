@@ -8,7 +8,7 @@ use breakaway_core::{Draws, Extraction, ExtractionState, Metrics};
 
 /// The paper's loop with another stiffness of the bristles and another speed of the motion.
 fn extraction(stiffness: f64, speed: f64) -> Extraction<f64> {
-    paper_as_computed().map(&mut |name, value| match name {
+    paper_as_computed().map(&mut |name, value| match name.field() {
         "stiffness_n_per_m" => value * stiffness,
         "duration_s" => value / speed,
         _ => value,

@@ -66,10 +66,10 @@ fn the_loop_runs_the_same_in_other_units() {
             ours.disturbance.acts_on = DisturbedQuantity::JointForce;
             ours.timing.integrator = integrator;
             ours.timing.steps_per_period = 4;
-            let theirs = ours.map(&mut |name, value| value * units.factor(name));
+            let theirs = ours.map(&mut |name, value| value * units.factor(name.field()));
             let (limits, their_limits) = (
                 paper_limits(),
-                paper_limits().map(&mut |name, value: f64| value * units.factor(name)),
+                paper_limits().map(&mut |name, value: f64| value * units.factor(name.field())),
             );
             let (mut state, mut their_state) =
                 (ExtractionState::at_rest(), ExtractionState::at_rest());
@@ -85,9 +85,9 @@ fn the_loop_runs_the_same_in_other_units() {
                 );
             }
             assert!(metrics.breakaway_s.is_finite() && state.plant.position_m > 0.02);
-            let converted = state.map(&mut |name, value| value * units.factor(name));
+            let converted = state.map(&mut |name, value| value * units.factor(name.field()));
             assert_eq!(their_state, converted);
-            let converted = metrics.map(&mut |name, value| value * units.factor(name));
+            let converted = metrics.map(&mut |name, value| value * units.factor(name.field()));
             assert_eq!(their_metrics, converted);
         }
     }

@@ -1,6 +1,7 @@
 //! A number that writes down what is done to it.
 
 use std::cell::RefCell;
+use std::fmt::Display;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -130,8 +131,8 @@ impl Recorder {
     }
 
     /// A new input for a field of a structure, named `group.field`; `group.field.2`, `group.field.3`
-    /// and so on where the structure has several fields of that name, as the two-step controller
-    /// has gains for each step. Meant for the closures of the core's `map`, which get field names.
+    /// and so on where several numbers have that name, as the elements of an array do. Meant for the
+    /// closures of the core's `map`, which get names.
     ///
     /// # Example
     /// ```
@@ -143,7 +144,7 @@ impl Recorder {
     /// });
     /// assert_eq!(graph.inputs()[0], "joint.stiction_n");
     /// ```
-    pub fn field(&mut self, group: &str, field: &str) -> Expr {
+    pub fn field(&mut self, group: &str, field: impl Display) -> Expr {
         let first = format!("{group}.{field}");
         let taken = |name: &str| Recording::with(|recording| recording.builder.has_input(name));
         let numbered = (2..).map(|n| format!("{first}.{n}"));
@@ -160,7 +161,7 @@ impl Recorder {
     ///     let two = recorder.constant(2.0);
     ///     recorder.output("two", two);
     /// });
-    /// assert_eq!(graph.evaluate(&[]), [2.0]);
+    /// assert_eq!(graph.evaluate::<f64>(&[]), [2.0]);
     /// ```
     #[must_use]
     pub fn constant(&self, value: f64) -> Expr {
@@ -293,8 +294,21 @@ impl Real for Expr {
     fn select(mask: ExprMask, yes: Self, no: Self) -> Self {
         Self(write([mask.0, yes.0, no.0], |[m, a, b]| Node::Select(m, a, b)))
     }
+    fn named(self, name: &'static str) -> Self {
+        Recording::with(|recording| {
+            let node = recording.node_of(self.0);
+            recording.builder.name(node, name);
+        });
+        self
+    }
+    fn section(title: &'static str) {
+        Recording::with(|recording| recording.builder.section(title));
+    }
     fn abs(self) -> Self {
         Self(write([self.0], |[a]| Node::Abs(a)))
+    }
+    fn round(self) -> Self {
+        Self(write([self.0], |[a]| Node::Round(a)))
     }
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         Self(write([self.0, factor.0, addend.0], |[a, b, c]| Node::MulAdd(a, b, c)))

@@ -21,8 +21,17 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod c;
+pub mod derive;
 pub mod expr;
 pub mod graph;
+pub mod model;
+pub mod passes;
+pub mod program;
+mod record_model;
+pub mod reference;
 
 pub use expr::{Expr, ExprMask, Recorder, record};
-pub use graph::{Bits, Graph, Node, NodeId};
+pub use graph::{Bits, Graph, Label, Node, NodeId};
+pub use model::What;
+pub use program::Program;

@@ -83,7 +83,7 @@ fn constants_are_shared_by_their_bits() {
         }
     });
     assert_eq!(graph.nodes().len(), 3);
-    let values = graph.evaluate(&[]);
+    let values = graph.evaluate::<f64>(&[]);
     assert!(values[0].is_sign_positive() && values[1].is_sign_negative() && values[4].is_nan());
 }
 

@@ -1,6 +1,7 @@
 //! Python binding: converts values and maps errors. No loops, no defaults, no physics.
 
 mod error;
+mod export;
 mod job;
 mod many;
 mod rig;
@@ -93,6 +94,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(many::instructions, module)?)?;
     module.add_function(wrap_pyfunction!(many::number_place, module)?)?;
     module.add_function(wrap_pyfunction!(many::fractions, module)?)?;
+    module.add_function(wrap_pyfunction!(export::export_code, module)?)?;
+    module.add_function(wrap_pyfunction!(export::export_reference, module)?)?;
     module.add_function(wrap_pyfunction!(impose, module)?)?;
     module.add_function(wrap_pyfunction!(breakaway_force, module)?)
 }

@@ -11,6 +11,7 @@ from typer.core import TyperGroup
 from breakaway.cli.compare import compare
 from breakaway.cli.design import design
 from breakaway.cli.events import events
+from breakaway.cli.export import export
 from breakaway.cli.identify import identify
 from breakaway.cli.reproduce import reproduce
 from breakaway.cli.run import run
@@ -160,3 +161,11 @@ app.command(
         "breakaway reproduce --full --out paper  # figure 10 in minutes, not seconds",
     )
 )(reproduce)
+app.add_typer(
+    export,
+    name="export",
+    epilog=_examples(
+        "breakaway export c paper_as_computed --what controller --out rig",
+        "breakaway export c my_joint.toml --what loop --real float --out firmware",
+    ),
+)

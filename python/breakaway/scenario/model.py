@@ -168,7 +168,7 @@ def _wanted(owner: type[BaseModel] | None, name: str) -> str:
 
 def valid_range(owner: type[BaseModel] | None, name: str) -> str:
     """The valid range of a field in words, such as ``a number > 0``."""
-    schema = _properties(owner).get(name, {}) if owner else {}
+    schema = properties(owner).get(name, {}) if owner else {}
     options = [o for o in schema.get("anyOf", [schema]) if o.get("type") != "null"]
     option = options[0] if options else {}
     signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
@@ -186,6 +186,7 @@ def valid_range(owner: type[BaseModel] | None, name: str) -> str:
 
 
 @functools.cache
-def _properties(model: type[BaseModel]) -> dict[str, Any]:
-    properties: dict[str, Any] = model.model_json_schema()["properties"]
-    return properties
+def properties(model: type[BaseModel]) -> dict[str, Any]:
+    """Give the JSON schema of each field of a model."""
+    found: dict[str, Any] = model.model_json_schema()["properties"]
+    return found

@@ -2,6 +2,7 @@
 
 use super::piezo::Charged;
 use super::{ActuatorState, Command, Driven, Effort, Piezo};
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::plant::Push;
 use crate::real::Real;
@@ -82,9 +83,9 @@ impl<R: Real> Chain<R> {
     /// The tool is the tip: `impedance` (v_tip) = `carried` − F.
     #[inline(always)]
     fn rigid(carried: R, impedance: R) -> Self {
-        let (zero, tip_yield) = (R::zero(), R::one() / impedance);
+        let (zero, tip_yield) = (R::zero(), (R::one() / impedance).named("tip_yield_m_per_n_s"));
         Self {
-            tip_free: carried * tip_yield,
+            tip_free: (carried * tip_yield).named("tip_free_m_per_s"),
             tip_yield,
             tool_free: zero,
             tool_follows: R::one(),
@@ -106,17 +107,22 @@ impl<R: Real> Chain<R> {
         impedance: R,
         h: R,
     ) -> Self {
+        R::section("stack and tip: F_s = k (u - x_p + x_t) - c (v_p - v_t)");
         let half = R::constant(0.5);
-        let stroke_mid_m = half * (charged.before_m + state.stroke_m);
+        let stroke_mid_m = (half * (charged.before_m + state.stroke_m)).named("stroke_middle_m");
         let stack_n = piezo.stiffness_n_per_m * (stroke_mid_m - state.tip_m + state.tool_m);
+        let stack_n = stack_n.named("stack_n");
         let stack = piezo.stiffness_n_per_m.mul_add(half * h, piezo.damping_n_s_per_m);
-        let tool = R::one() / (impedance + stack);
-        let (tool_free, tool_follows) = ((carried - stack_n) * tool, stack * tool);
-        let inertia = piezo.tip_mass_kg / (half * h);
+        let stack = stack.named("stack_n_s_per_m");
+        let tool = (R::one() / (impedance + stack)).named("tool_yield_m_per_n_s");
+        let tool_free = ((carried - stack_n) * tool).named("tool_free_m_per_s");
+        let tool_follows = (stack * tool).named("tool_follows");
+        let inertia = (piezo.tip_mass_kg / (half * h)).named("tip_inertia_n_s_per_m");
         let tip_yield = R::one() / (-stack).mul_add(tool_follows, inertia + stack);
-        let pushed = inertia.mul_add(state.tip_m_per_s, stack_n);
+        let tip_yield = tip_yield.named("tip_yield_m_per_n_s");
+        let pushed = inertia.mul_add(state.tip_m_per_s, stack_n).named("tip_pushed_n");
         Self {
-            tip_free: stack.mul_add(tool_free, pushed) * tip_yield,
+            tip_free: (stack.mul_add(tool_free, pushed) * tip_yield).named("tip_free_m_per_s"),
             tip_yield,
             tool_free,
             tool_follows,
@@ -129,21 +135,21 @@ impl<R: Real> Chain<R> {
 
 impl<R: Real> FeedAxis<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> FeedAxis<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FeedAxis<S> {
         FeedAxis {
-            speed_max_m_per_s: f("speed_max_m_per_s", self.speed_max_m_per_s),
+            speed_max_m_per_s: f(Name::of("speed_max_m_per_s"), self.speed_max_m_per_s),
             acceleration_max_m_per_s2: f(
-                "acceleration_max_m_per_s2",
+                Name::of("acceleration_max_m_per_s2"),
                 self.acceleration_max_m_per_s2,
             ),
-            stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
-            damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
-            tool_mass_kg: f("tool_mass_kg", self.tool_mass_kg),
+            stiffness_n_per_m: f(Name::of("stiffness_n_per_m"), self.stiffness_n_per_m),
+            damping_n_s_per_m: f(Name::of("damping_n_s_per_m"), self.damping_n_s_per_m),
+            tool_mass_kg: f(Name::of("tool_mass_kg"), self.tool_mass_kg),
             tip: match &self.tip {
                 Tip::Rigid => Tip::Rigid,
-                Tip::Piezo(piezo) => Tip::Piezo(piezo.map(f)),
+                Tip::Piezo(piezo) => Tip::Piezo(within!("tip", piezo, f)),
             },
-            contact: self.contact.map(f),
+            contact: within!("contact", self.contact, f),
         }
     }
 
@@ -155,13 +161,14 @@ impl<R: Real> FeedAxis<R> {
         part_m: R,
         h: R,
     ) -> Driven<R> {
-        let k = R::constant(0.5) * h;
+        let k = (R::constant(0.5) * h).named("half_step_s");
         let (feed_mean, feed_mid, late) = self.feed(state, command, h);
+        R::section("tool: m_t dv_t/dt = k_f (p - x_t) + c_f (w - v_t) - F_s");
         let (k_f, c_f) = (self.stiffness_n_per_m, self.damping_n_s_per_m);
-        let inertia = self.tool_mass_kg / k;
-        let axis_n = k_f * (feed_mid - state.tool_m) + c_f * feed_mean;
-        let carried = inertia.mul_add(state.tool_m_per_s, axis_n);
-        let impedance = inertia + k_f.mul_add(k, c_f);
+        let inertia = (self.tool_mass_kg / k).named("tool_inertia_n_s_per_m");
+        let axis_n = (k_f * (feed_mid - state.tool_m) + c_f * feed_mean).named("axis_n");
+        let carried = inertia.mul_add(state.tool_m_per_s, axis_n).named("carried_n");
+        let impedance = (inertia + k_f.mul_add(k, c_f)).named("impedance_n_s_per_m");
         let (charged, mut chain) = match &self.tip {
             Tip::Rigid => (Charged::none(), Chain::rigid(carried, impedance)),
             Tip::Piezo(piezo) => {
@@ -170,11 +177,13 @@ impl<R: Real> FeedAxis<R> {
             }
         };
         (chain.feed_mean_m_per_s, chain.feed_mid_m) = (feed_mean, feed_mid);
-        chain.pressed_m = self.pressed(state, part_m);
+        R::section("contact: F = max(0, k_c (x_p - gap - x) + c_c (v_p - v))");
+        chain.pressed_m = self.pressed(state, part_m).named("pressed_m");
         let contact = self.contact.stiffness_n_per_m.mul_add(k, self.contact.damping_n_s_per_m);
-        let spring_n = self.contact.stiffness_n_per_m * chain.pressed_m;
-        let free_n = contact.mul_add(chain.tip_free, spring_n);
-        let shared = R::one() / contact.mul_add(chain.tip_yield, R::one());
+        let contact = contact.named("contact_n_s_per_m");
+        let spring_n = (self.contact.stiffness_n_per_m * chain.pressed_m).named("spring_n");
+        let free_n = contact.mul_add(chain.tip_free, spring_n).named("free_n");
+        let shared = (R::one() / contact.mul_add(chain.tip_yield, R::one())).named("shared");
         let current = charged.current_a;
         Driven {
             push: Push { force_n: free_n * shared, yielding_n_s_per_m: Some(contact * shared) },
@@ -209,14 +218,15 @@ impl<R: Real> FeedAxis<R> {
     /// that is not a number stops it.
     #[inline(always)]
     fn feed(&self, state: &mut ActuatorState<R>, command: &Command<R>, h: R) -> (R, R, R::Mask) {
+        R::section("feed: dw/dt = clip((command - w) / h, -a, a)");
         let half = R::constant(0.5);
         let limit = self.speed_max_m_per_s;
         let told = command.feed_m_per_s;
         let wanted = R::select(told.le(told), told.clamp(-limit, limit), R::zero());
-        let most = self.acceleration_max_m_per_s2 * h;
-        let change = (wanted - state.feed_m_per_s).clamp(-most, most);
-        let mean = half.mul_add(change, state.feed_m_per_s);
-        let mid = (half * h).mul_add(mean, state.feed_m);
+        let most = (self.acceleration_max_m_per_s2 * h).named("most_m_per_s");
+        let change = (wanted - state.feed_m_per_s).clamp(-most, most).named("change_m_per_s");
+        let mean = half.mul_add(change, state.feed_m_per_s).named("feed_mean_m_per_s");
+        let mid = (half * h).mul_add(mean, state.feed_m).named("feed_middle_m");
         state.feed_m = h.mul_add(mean, state.feed_m);
         state.feed_m_per_s = state.feed_m_per_s + change;
         let late = state.feed_m_per_s.lt(told) | told.lt(state.feed_m_per_s);
@@ -235,10 +245,11 @@ impl<R: Real> FeedAxis<R> {
         part_m_per_s: R,
         h: R,
     ) -> Effort<R> {
+        R::section("tool and tip move on");
         let (half, two) = (R::constant(0.5), R::constant(2.0));
         let k = half * h;
-        let tip_v = (-chain.tip_yield).mul_add(push_n, chain.tip_free);
-        let tool_v = chain.tool_follows.mul_add(tip_v, chain.tool_free);
+        let tip_v = (-chain.tip_yield).mul_add(push_n, chain.tip_free).named("tip_m_per_s");
+        let tool_v = chain.tool_follows.mul_add(tip_v, chain.tool_free).named("tool_m_per_s");
         let tool_mid = k.mul_add(tool_v, state.tool_m);
         let slip = chain.feed_mean_m_per_s - tool_v;
         let axis_n =

@@ -33,13 +33,16 @@ impl<R: Real> ForceActuator<R> {
 
     #[inline(always)]
     pub(super) fn drive(&self, state: &mut ActuatorState<R>, command_n: R, h: R) -> Driven<R> {
+        R::section("force actuator: dF/dt = clip((u - F) / tau, -r, r)");
         let before = state.force_n;
         let target = self.range().limit(command_n);
         let per_s = R::constant(-2.0 * core::f64::consts::PI) * self.bandwidth_hz;
-        let wanted = (target - before) * (R::one() - (per_s * h).exp());
-        let most = self.force_rate_max_n_per_s * h;
+        let share = (R::one() - (per_s * h).exp()).named("lag_share");
+        let wanted = ((target - before) * share).named("wanted_change_n");
+        let most = (self.force_rate_max_n_per_s * h).named("most_n");
         // Rounding may lead out of the range, by a bit.
-        state.force_n = self.range().limit(before + wanted.clamp(-most, most));
+        let force_n = self.range().limit(before + wanted.clamp(-most, most));
+        state.force_n = force_n.named("actuator_force_n");
         let limited = target.lt(command_n) | command_n.lt(target) | most.lt(wanted.abs());
         let mut driven = Driven::rigid(R::constant(0.5) * (before + state.force_n));
         driven.effort.saturated_s = R::select(limited, h, R::zero());

@@ -14,6 +14,7 @@ pub use force_actuator::ForceActuator;
 pub use piezo::Piezo;
 pub use push_only::PushOnly;
 
+use crate::name::Name;
 use crate::parameters::parameters;
 use crate::plant::Push;
 use crate::real::Real;
@@ -195,7 +196,7 @@ impl<R: Real> Driven<R> {
 
 impl<R: Real> Actuator<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Actuator<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Actuator<S> {
         match self {
             Self::Ideal => Actuator::Ideal,
             Self::PushOnly(actuator) => Actuator::PushOnly(actuator.map(f)),
@@ -230,7 +231,8 @@ impl<R: Real> Actuator<R> {
         match self {
             Self::Ideal => Driven::rigid(command.force_n),
             Self::PushOnly(actuator) => {
-                let force_n = actuator.range().limit(command.force_n);
+                R::section("push-only actuator: 0 <= F <= F_max");
+                let force_n = actuator.range().limit(command.force_n).named("pushed_n");
                 let mut driven = Driven::rigid(force_n);
                 let missed = force_n.lt(command.force_n) | command.force_n.lt(force_n);
                 driven.effort.saturated_s = R::select(missed, h, R::zero());

@@ -79,12 +79,14 @@ impl<R: Real> Piezo<R> {
         command: &Command<R>,
         h: R,
     ) -> Charged<R> {
+        R::section("stack: dV/dt = clip((s V_max - V) / tau, -I_max / C, I_max / C)");
         let target = command.stack_share.clamp(R::zero(), R::one()) * self.voltage_max_v;
         let per_s = R::constant(-2.0 * core::f64::consts::PI) * self.amplifier_bandwidth_hz;
-        let wanted = (target - state.voltage_v) * (R::one() - (per_s * h).exp());
-        let most = self.current_max_a * h / self.capacitance_f;
-        let change = wanted.clamp(-most, most);
-        state.voltage_v = state.voltage_v + change;
+        let share = (R::one() - (per_s * h).exp()).named("amplifier_share");
+        let wanted = ((target - state.voltage_v) * share).named("wanted_change_v");
+        let most = (self.current_max_a * h / self.capacitance_f).named("most_v");
+        let change = wanted.clamp(-most, most).named("change_v");
+        state.voltage_v = (state.voltage_v + change).named("voltage_v");
         let before_m = state.stroke_m;
         self.play(state);
         state.stroke_m = self.free_stroke(state);
@@ -97,6 +99,7 @@ impl<R: Real> Piezo<R> {
 
     #[inline(always)]
     fn play(&self, state: &mut ActuatorState<R>) {
+        R::section("stack, hysteresis: play_i = clip(play_i, V - r_i, V + r_i)");
         let v = state.voltage_v;
         let [r1, r2, r3, r4] = Self::PLAY;
         state.play_1_v = self.played(state.play_1_v, v, r1);
@@ -107,8 +110,8 @@ impl<R: Real> Piezo<R> {
 
     #[inline(always)]
     fn played(&self, play: R, v: R, share: f64) -> R {
-        let r = R::constant(share) * self.voltage_max_v;
-        play.clamp(v - r, v + r)
+        let r = (R::constant(share) * self.voltage_max_v).named("play_range_v");
+        play.clamp(v - r, v + r).named("play_v")
     }
 
     /// u in m for the voltage and the play operators of `state`.
@@ -117,6 +120,7 @@ impl<R: Real> Piezo<R> {
         let played = state.play_1_v + state.play_2_v + state.play_3_v + state.play_4_v;
         let lagging = self.hysteresis_share * R::constant(Self::WEIGHT) * played;
         let direct = (R::one() - self.hysteresis_share).mul_add(state.voltage_v, lagging);
-        self.stroke_m / self.voltage_max_v * direct
+        ((self.stroke_m / self.voltage_max_v).named("stroke_m_per_v") * direct.named("direct_v"))
+            .named("stroke_m")
     }
 }

@@ -1,6 +1,7 @@
 //! Frequency-modulated vibration.
 
 use super::Measurement;
+use crate::name::Name;
 use crate::real::Real;
 
 /// The course of the force during a pulse, from 0 to 1 and back.
@@ -54,13 +55,13 @@ pub struct FmVibrationState<R> {
 
 impl<R: Real> FmVibration<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> FmVibration<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FmVibration<S> {
         FmVibration {
-            frequency_min_hz: f("frequency_min_hz", self.frequency_min_hz),
-            frequency_max_hz: f("frequency_max_hz", self.frequency_max_hz),
-            error_full_scale_m: f("error_full_scale_m", self.error_full_scale_m),
-            pulse_width_s: f("pulse_width_s", self.pulse_width_s),
-            base_fraction: f("base_fraction", self.base_fraction),
+            frequency_min_hz: f(Name::of("frequency_min_hz"), self.frequency_min_hz),
+            frequency_max_hz: f(Name::of("frequency_max_hz"), self.frequency_max_hz),
+            error_full_scale_m: f(Name::of("error_full_scale_m"), self.error_full_scale_m),
+            pulse_width_s: f(Name::of("pulse_width_s"), self.pulse_width_s),
+            base_fraction: f(Name::of("base_fraction"), self.base_fraction),
             shape: self.shape,
         }
     }
@@ -68,8 +69,9 @@ impl<R: Real> FmVibration<R> {
     /// The pulse frequency in Hz for an error in m.
     #[inline(always)]
     pub fn frequency(&self, error_m: R) -> R {
-        let share = (error_m.abs() / self.error_full_scale_m).min(R::one());
-        self.frequency_min_hz + (self.frequency_max_hz - self.frequency_min_hz) * share
+        let share = (error_m.abs() / self.error_full_scale_m).min(R::one()).named("error_share");
+        let span_hz = (self.frequency_max_hz - self.frequency_min_hz).named("span_hz");
+        (self.frequency_min_hz + span_hz * share).named("frequency_hz")
     }
 
     /// The force in N at a sample for an amplitude in N; moves phase and clock by one period.
@@ -81,17 +83,19 @@ impl<R: Real> FmVibration<R> {
         measured: &Measurement<R>,
     ) -> R {
         // Half a period less, so that rounding does not decide whether a pulse has a sample more.
-        let last_s = self.pulse_width_s - R::constant(0.5) * measured.period_s;
-        let progress = state.since_pulse_s / self.pulse_width_s;
+        R::section("pulses: F = A (b + (1 - b) shape(u)), u = time since the pulse's start / t_p");
+        let last_s = (self.pulse_width_s - R::constant(0.5) * measured.period_s).named("last_s");
+        let progress = (state.since_pulse_s / self.pulse_width_s).named("progress");
         let on = state.since_pulse_s.lt(last_s);
-        let pulse = R::select(on, self.shape(progress), R::zero());
-        let next =
-            self.frequency(measured.error_m()).mul_add(measured.period_s, state.phase_cycles);
+        let pulse = R::select(on, self.shape(progress), R::zero()).named("pulse");
+        R::section("pulses, phase: f = f_min + (f_max - f_min) min(|e| / e_full, 1)");
+        let frequency_hz = self.frequency(measured.error_m());
+        let next = frequency_hz.mul_add(measured.period_s, state.phase_cycles).named("next_cycles");
         let starts = R::one().le(next);
         state.phase_cycles = next - R::flag(starts);
         state.since_pulse_s = R::select(starts, R::zero(), state.since_pulse_s + measured.period_s);
         let base = self.base_fraction;
-        amplitude_n * (base + (R::one() - base) * pulse)
+        (amplitude_n * (base + (R::one() - base).named("pulse_share") * pulse)).named("pulsed_n")
     }
 
     #[inline(always)]
@@ -120,12 +124,12 @@ pub(super) fn half_sine<R: Real>(u: R) -> R {
         -1.0 / 6_402_373_705_728_000.0,
     ];
     let y = R::constant(core::f64::consts::PI) * (u - R::constant(0.5));
-    let square = y * y;
+    let square = (y * y).named("angle_squared");
     let mut sum = R::constant(COSINE[9]);
     for &coefficient in COSINE[..9].iter().rev() {
         sum = sum * square + R::constant(coefficient);
     }
-    sum
+    sum.named("half_sine")
 }
 
 #[cfg(test)]

@@ -26,9 +26,10 @@ impl<R: Real> ForceRamp<R> {
     /// The command at a sample; `force_n` is what moves.
     #[inline(always)]
     pub fn step(&self, force_n: &mut R, measured: &Measurement<R>) -> Command<R> {
+        R::section("ramp: F = F + r T_s while x < l, then 0");
         let inside = measured.position_m.lt(self.travel_m);
-        let grown = self.rate_n_per_s.mul_add(measured.period_s, *force_n);
-        *force_n = R::select(inside, measured.range.limit(grown), R::zero());
+        let grown = self.rate_n_per_s.mul_add(measured.period_s, *force_n).named("grown_n");
+        *force_n = R::select(inside, measured.range.limit(grown), R::zero()).named("ramp_n");
         Command::force(*force_n)
     }
 }

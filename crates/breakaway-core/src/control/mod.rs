@@ -24,6 +24,7 @@ pub use vibrated_feed::{StackPulses, VibratedFeed, VibratedFeedState};
 pub use watch::{Watch, WatchState};
 
 use crate::actuator::{Command, ForceRange};
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 use crate::reference::Setpoint;
@@ -51,7 +52,7 @@ impl<R: Real> Measurement<R> {
     /// e = r − x in m.
     #[inline(always)]
     pub fn error_m(&self) -> R {
-        self.reference_m - self.position_m
+        (self.reference_m - self.position_m).named("error_m")
     }
 }
 
@@ -109,11 +110,11 @@ impl<R: Real> ControllerState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ControllerState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ControllerState<S> {
         ControllerState {
-            vibration: self.vibration.map(f),
-            impacts: self.impacts.map(f),
-            feed: self.feed.map(f),
+            vibration: within!("vibration", self.vibration, f),
+            impacts: within!("impacts", self.impacts, f),
+            feed: within!("feed", self.feed, f),
         }
     }
 }
@@ -172,8 +173,11 @@ pub struct VibratingPid<R> {
 
 impl<R: Real> VibratingPid<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> VibratingPid<S> {
-        VibratingPid { pid: self.pid.map(f), vibration: self.vibration.map(f) }
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> VibratingPid<S> {
+        VibratingPid {
+            pid: within!("pid", self.pid, f),
+            vibration: within!("vibration", self.vibration, f),
+        }
     }
 }
 
@@ -200,7 +204,7 @@ pub enum Controller<R> {
 
 impl<R: Real> Controller<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Controller<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Controller<S> {
         match self {
             Self::Pid(pid) => Controller::Pid(pid.map(f)),
             Self::FmVibration(c) => Controller::FmVibration(c.map(f)),

@@ -1,6 +1,7 @@
 //! Sampled PID force controller.
 
 use super::Measurement;
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -108,10 +109,10 @@ impl<R: Real> Gains<R> {
     fn force(&self, error_m: R, filtered: &Filtered<R>, integral_n: R) -> R {
         let kd = self.kd_n_s_per_m;
         let base = match filtered.kept {
-            Some(kept) => kd.mul_add(kept, integral_n),
+            Some(kept) => kd.mul_add(kept, integral_n).named("kept_derivative_n"),
             None => integral_n,
         };
-        let steady = self.kp_n_per_m.mul_add(error_m, base);
+        let steady = self.kp_n_per_m.mul_add(error_m, base).named("proportional_n");
         (kd * filtered.share).mul_add(filtered.raw, steady)
     }
 }
@@ -138,14 +139,16 @@ impl<R: Real> Pid<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Pid<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Pid<S> {
         Pid {
-            gains: self.gains.map(f),
+            gains: within!("gains", self.gains, f),
             derivative_of: self.derivative_of,
             velocity_from: self.velocity_from,
-            derivative_filter_s: self.derivative_filter_s.map(|tau| f("derivative_filter_s", tau)),
+            derivative_filter_s: self
+                .derivative_filter_s
+                .map(|tau| f(Name::of("derivative_filter_s"), tau)),
             anti_windup: self.anti_windup,
-            tracking_time_s: f("tracking_time_s", self.tracking_time_s),
+            tracking_time_s: f(Name::of("tracking_time_s"), self.tracking_time_s),
         }
     }
 
@@ -159,24 +162,27 @@ impl<R: Real> Pid<R> {
     /// Updates the filtered derivative from a sample; gives its parts.
     #[inline(always)]
     pub(super) fn sense(&self, state: &mut PidState<R>, measured: &Measurement<R>) -> Filtered<R> {
+        R::section("PID, derivative: d = (1 - s) d + s d_raw, s = T_s / (tau_f + T_s)");
         let velocity = match self.velocity_from {
             VelocityFrom::Sensor => measured.velocity_m_per_s,
             VelocityFrom::PositionDifference => {
-                (measured.position_m - state.previous_position_m) / measured.period_s
+                let travel_m = measured.position_m - state.previous_position_m;
+                (travel_m / measured.period_s).named("differenced_m_per_s")
             }
         };
         let raw = match self.derivative_of {
             DerivativeOf::Error => measured.reference_rate_m_per_s - velocity,
             DerivativeOf::Measurement => -velocity,
-        };
+        }
+        .named("raw_derivative_m_per_s");
         state.previous_position_m = measured.position_m;
         let Some(filter_s) = self.derivative_filter_s else {
             state.derivative_m_per_s = raw;
             return Filtered { kept: None, share: R::one(), raw };
         };
-        let share = measured.period_s / (filter_s + measured.period_s);
-        let kept = (R::one() - share) * state.derivative_m_per_s;
-        state.derivative_m_per_s = share.mul_add(raw, kept);
+        let share = (measured.period_s / (filter_s + measured.period_s)).named("filter_share");
+        let kept = ((R::one() - share) * state.derivative_m_per_s).named("kept_m_per_s");
+        state.derivative_m_per_s = share.mul_add(raw, kept).named("derivative_m_per_s");
         Filtered { kept: Some(kept), share, raw }
     }
 
@@ -189,10 +195,12 @@ impl<R: Real> Pid<R> {
         state: &mut PidState<R>,
         measured: &Measurement<R>,
     ) -> R {
+        R::section("PID: F = kp e + I + kd d, I = I + ki T_s e before use");
         let error = measured.error_m();
-        let advanced = (gains.ki_n_per_m_s * measured.period_s).mul_add(error, state.integral_n);
-        let wanted = gains.force(error, filtered, advanced);
-        let limited = measured.range.limit(wanted);
+        let ki_n_per_m = (gains.ki_n_per_m_s * measured.period_s).named("ki_n_per_m");
+        let advanced = ki_n_per_m.mul_add(error, state.integral_n).named("integral_n");
+        let wanted = gains.force(error, filtered, advanced).named("wanted_n");
+        let limited = measured.range.limit(wanted).named("limited_n");
         match self.anti_windup {
             AntiWindup::Off => {
                 state.integral_n = advanced;
@@ -201,12 +209,15 @@ impl<R: Real> Pid<R> {
             AntiWindup::Conditional => {
                 let winds_up = (limited.lt(wanted) & state.integral_n.lt(advanced))
                     | (wanted.lt(limited) & advanced.lt(state.integral_n));
-                state.integral_n = R::select(winds_up, state.integral_n, advanced);
-                measured.range.limit(gains.force(error, filtered, state.integral_n))
+                state.integral_n =
+                    R::select(winds_up, state.integral_n, advanced).named("kept_integral_n");
+                let force_n = gains.force(error, filtered, state.integral_n).named("unlimited_n");
+                measured.range.limit(force_n).named("pid_n")
             }
             AntiWindup::BackCalculation => {
-                let share = measured.period_s / self.tracking_time_s;
-                state.integral_n = share.mul_add(limited - wanted, advanced);
+                let share = (measured.period_s / self.tracking_time_s).named("tracking_share");
+                state.integral_n =
+                    share.mul_add(limited - wanted, advanced).named("tracked_integral_n");
                 limited
             }
         }
@@ -228,20 +239,25 @@ impl<R: Real> Pid<R> {
         sensed: &PidState<R>,
         measured: &Measurement<R>,
     ) -> R {
+        R::section(
+            "hand-over: I = I_from + (kp_from - kp) e + (kd_from - kd) d_from + kd (d_from - d)",
+        );
         let (to, d) = (&self.gains, last.derivative_m_per_s);
         let bump = (from.kp_n_per_m - to.kp_n_per_m) * measured.error_m()
             + (from.kd_n_s_per_m - to.kd_n_s_per_m) * d
             + to.kd_n_s_per_m * (d - sensed.derivative_m_per_s);
-        last.integral_n + bump
+        (last.integral_n + bump.named("bump_n")).named("taken_over_n")
     }
 
     /// The integral in N with which this PID goes on from a force: F − kp e − kd d, with the
     /// derivative as sensed.
     #[inline(always)]
     pub fn integral_from(&self, force_n: R, sensed: &PidState<R>, measured: &Measurement<R>) -> R {
-        force_n
+        R::section("hand-over: I = F - kp e - kd d");
+        let integral_n = force_n
             - self.gains.kp_n_per_m * measured.error_m()
-            - self.gains.kd_n_s_per_m * sensed.derivative_m_per_s
+            - self.gains.kd_n_s_per_m * sensed.derivative_m_per_s;
+        integral_n.named("taken_over_n")
     }
 }
 

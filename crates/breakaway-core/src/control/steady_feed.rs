@@ -28,9 +28,10 @@ impl<R: Real> SteadyFeed<R> {
     /// The speed in m/s at a sample; `elapsed_s` is what moves.
     #[inline(always)]
     pub fn speed(&self, elapsed_s: &mut R, period_s: R) -> R {
+        R::section("feed: w = w_a while t < t_a, then w_0");
         let approaching = (*elapsed_s).lt(self.approach_s);
         *elapsed_s = *elapsed_s + period_s;
-        R::select(approaching, self.approach_m_per_s, self.speed_m_per_s)
+        R::select(approaching, self.approach_m_per_s, self.speed_m_per_s).named("feed_m_per_s")
     }
 
     /// The command at a sample.

@@ -2,6 +2,7 @@
 
 use super::Measurement;
 use crate::actuator::Command;
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -218,10 +219,10 @@ impl<R: Real> TimedImpactsState<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TimedImpactsState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TimedImpactsState<S> {
         TimedImpactsState {
-            numbers: self.numbers.map(f),
-            window_m: self.window_m.map(|x| f("window_m", x)),
+            numbers: within!("numbers", self.numbers, f),
+            window_m: self.window_m.map(|x| f(Name::of("window_m"), x)),
         }
     }
 }
@@ -243,10 +244,12 @@ impl<R: Real> TimedImpacts<R> {
     #[inline(always)]
     pub fn step(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) -> Command<R> {
         self.look(state, measured);
+        R::section("impacts: cut when (x - x_0) + kappa v >= Delta, or fruitless at the ceiling");
         let seen = self.velocity(&state.window_m, measured.period_s);
         let n = &mut state.numbers;
-        let stretched = n.start_m + n.recoil_m + self.travel_min_m;
+        let stretched = (n.start_m + n.recoil_m + self.travel_min_m).named("stretched_m");
         let v = R::select(stretched.lt(measured.position_m), seen, R::zero());
+        let v = v.named("seen_m_per_s");
         let rising = !n.coasting.is_set() & !n.free.is_set();
         let known = R::zero().lt(n.ceiling_n);
         let at_ceiling = rising & known & n.ceiling_n.le(n.force_n);
@@ -266,6 +269,7 @@ impl<R: Real> TimedImpacts<R> {
     /// Takes a sample in: window, clocks, the modeled force.
     #[inline(always)]
     fn look(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) {
+        R::section("impacts, sample: window of positions, clocks, modeled force");
         let (x, period) = (measured.position_m, measured.period_s);
         let first = state.numbers.seen.lt(R::constant(0.5));
         for i in (1..WINDOW).rev() {
@@ -279,11 +283,11 @@ impl<R: Real> TimedImpacts<R> {
         n.force_n = R::select(first, self.force_start_n, n.force_n);
         n.lead_s = R::select(first, self.lead_start_s, n.lead_s);
         n.step_m = R::select(first, self.step_min_m, n.step_m);
-        n.elapsed_s = n.elapsed_s + period;
-        n.in_cycle_s = n.in_cycle_s + period;
-        let share = period / (self.actuator_lag_s + period);
-        n.modeled_n = share.mul_add(n.force_n - n.modeled_n, n.modeled_n);
-        n.peak_n = n.peak_n.max(n.modeled_n);
+        n.elapsed_s = (n.elapsed_s + period).named("elapsed_s");
+        n.in_cycle_s = (n.in_cycle_s + period).named("in_cycle_s");
+        let share = (period / (self.actuator_lag_s + period)).named("lag_share");
+        n.modeled_n = share.mul_add(n.force_n - n.modeled_n, n.modeled_n).named("modeled_n");
+        n.peak_n = n.peak_n.max(n.modeled_n).named("peak_n");
         let [w0, w1, w2, ..] = state.window_m;
         let beyond = (self.travel_m + self.free_margin_m) * R::constant(3.0);
         n.free = R::select(beyond.le(w0 + w1 + w2), R::one(), n.free);
@@ -292,39 +296,47 @@ impl<R: Real> TimedImpacts<R> {
     /// v̂ in m/s.
     #[inline(always)]
     fn velocity(&self, window: &[R; WINDOW], period_s: R) -> R {
+        R::section("impacts, velocity: largest slope over 3, 5 and 8 positions, less its noise");
         let c = |value: f64| R::constant(value);
         let [w0, w1, w2, w3, w4, w5, w6, w7] = *window;
-        let noise = self.noise_margin * self.noise_rms_m;
+        let noise = (self.noise_margin * self.noise_rms_m).named("noise_m");
         let three = c(0.5) * (w0 - w2) - noise * c(0.707_106_781_186_547_5);
         let five = c(0.1) * (c(2.0) * (w0 - w4) + (w1 - w3)) - noise * c(0.316_227_766_016_837_9);
         let eight = c(1.0 / 84.0)
             * (c(7.0) * (w0 - w7) + c(5.0) * (w1 - w6) + c(3.0) * (w2 - w5) + (w3 - w4))
             - noise * c(0.154_303_349_962_091_9);
-        three.max(five).max(eight).max(R::zero()) / period_s
+        let (three, five) = (three.named("slope_of_3_m"), five.named("slope_of_5_m"));
+        let slope_m = three.max(five).max(eight.named("slope_of_8_m")).max(R::zero());
+        (slope_m.named("slope_m") / period_s).named("slope_m_per_s")
     }
 
     /// Whether the force must be cut now.
     #[inline(always)]
     fn slips(&self, n: &ImpactNumbers<R>, x: R, v: R) -> R::Mask {
-        let travel = x - n.start_m;
+        let travel = (x - n.start_m).named("travel_m");
         n.step_m.le(n.lead_s.mul_add(v, travel)) & (n.recoil_m + self.travel_min_m).lt(travel)
     }
 
     #[inline(always)]
     fn grown(&self, n: &ImpactNumbers<R>, v: R, measured: &Measurement<R>) -> R {
+        R::section(
+            "impacts, rise: F = F (1 + b T_s / tau), b = clip(1 - (v - v_1) / (v_2 - v_1), 0, 1)",
+        );
         let (zero, one) = (R::zero(), R::one());
-        let range = self.holding_m_per_s - self.slowing_m_per_s;
-        let b = (one - (v - self.slowing_m_per_s) / range).clamp(zero, one);
+        let range = (self.holding_m_per_s - self.slowing_m_per_s).named("slowing_range_m_per_s");
+        let b = (one - (v - self.slowing_m_per_s) / range).clamp(zero, one).named("growth");
         let known = zero.lt(n.ceiling_n);
         let tau = R::select(known, self.rise_time_constant_s, self.search_time_constant_s);
-        let grown = n.force_n * (b * measured.period_s / tau + one);
-        let limited = measured.range.limit(grown);
+        let tau = tau.named("time_constant_s");
+        let grown = (n.force_n * (b * measured.period_s / tau + one)).named("grown_n");
+        let limited = measured.range.limit(grown).named("limited_n");
         R::select(known, limited.min(n.ceiling_n.max(n.force_n)), limited)
     }
 
     /// Coasts until the part rests; then plans the next cycle.
     #[inline(always)]
     fn coast(&self, n: &mut ImpactNumbers<R>, measured: &Measurement<R>) {
+        R::section("impacts, coast: until means over ten samples agree within d");
         let (zero, one) = (R::zero(), R::one());
         let coasting = n.coasting.is_set();
         let count = R::constant(MEAN_SAMPLES);
@@ -332,7 +344,7 @@ impl<R: Real> TimedImpacts<R> {
         n.mean_count = R::select(coasting, n.mean_count + one, zero);
         n.mean_sum_m = R::select(coasting, n.mean_sum_m + measured.position_m, zero);
         let full = coasting & count.le(n.mean_count);
-        let mean = n.mean_sum_m / count;
+        let mean = (n.mean_sum_m / count).named("position_mean_m");
         let agrees = (mean - n.mean_m).abs().lt(self.settled_m);
         n.mean_m = R::select(full, mean, n.mean_m);
         n.mean_count = R::select(full, zero, n.mean_count);
@@ -345,17 +357,19 @@ impl<R: Real> TimedImpacts<R> {
     /// The cycle after this one, from where the part rests.
     #[inline(always)]
     fn next_cycle(&self, n: &ImpactNumbers<R>) -> ImpactNumbers<R> {
-        let (zero, one, share) = (R::zero(), R::one(), R::constant(NEW_SHARE));
+        R::section("impacts, next cycle: Delta = what is left / time left * cycle + recoil");
+        let (zero, share) = (R::zero(), R::constant(NEW_SHARE));
         let first = n.ceiling_n.le(zero);
-        let travel = n.furthest_m - n.start_m;
+        let travel = (n.furthest_m - n.start_m).named("travel_m");
         let recoil = share.mul_add((n.furthest_m - n.mean_m) - n.recoil_m, n.recoil_m);
-        let mean_cycle = share.mul_add(n.in_cycle_s - n.cycle_s, n.cycle_s);
-        let cycle = R::select(first, R::constant(FIRST_CYCLE_S), mean_cycle);
+        let recoil = recoil.named("recoil_m");
+        let mean_cycle = share.mul_add(n.in_cycle_s - n.cycle_s, n.cycle_s).named("mean_cycle_s");
+        let cycle = R::select(first, R::constant(FIRST_CYCLE_S), mean_cycle).named("cycle_s");
         let rough = self.rough_slip_m.lt(travel);
         let later = (n.put_off_s + self.patience_s).min(self.patience_max_s);
-        let put_off = R::select(rough, later, n.put_off_s);
-        let left_s = (self.target_s + put_off - n.elapsed_s).max(cycle);
-        let needed = (self.travel_m - n.mean_m) / left_s * cycle + recoil;
+        let put_off = R::select(rough, later, n.put_off_s).named("put_off_s");
+        let left_s = (self.target_s + put_off - n.elapsed_s).max(cycle).named("left_s");
+        let needed = ((self.travel_m - n.mean_m) / left_s * cycle + recoil).named("needed_m");
         let (ceiling, dwell) = self.next_ceiling(n, travel, rough);
         ImpactNumbers {
             coasting: zero,
@@ -381,6 +395,7 @@ impl<R: Real> TimedImpacts<R> {
     /// C in N and the dwell at it in s, after an impact of some travel.
     #[inline(always)]
     fn next_ceiling(&self, n: &ImpactNumbers<R>, travel: R, rough: R::Mask) -> (R, R) {
+        R::section("impacts, next ceiling: C = C (1 + p clip((Delta - s) / Delta, -3, 1))");
         let (zero, one) = (R::zero(), R::one());
         let slipped = n.seen_to_slip.is_set();
         let first = n.ceiling_n.le(zero);
@@ -388,13 +403,15 @@ impl<R: Real> TimedImpacts<R> {
         let dwells = high & n.dwell_s.lt(self.dwell_max_s) & !slipped;
         let longer = R::select(dwells, n.dwell_s + self.dwell_step_s, n.dwell_s);
         let dwell = R::select(slipped, n.dwell_s * self.dwell_kept_share, longer);
+        let dwell = dwell.named("next_dwell_s");
         let followed = self.breakaway_share.mul_add(n.peak_n - n.ceiling_n, n.ceiling_n);
-        let base = R::select(slipped, followed, n.ceiling_n);
-        let missing = (n.step_m - travel) / n.step_m;
+        let base = R::select(slipped, followed.named("followed_n"), n.ceiling_n).named("base_n");
+        let missing = ((n.step_m - travel) / n.step_m).named("missing_share");
         let most_up = R::select(dwells, zero, one);
         let correction = self.probe_ratio * missing.clamp(-R::constant(MOST_DOWN), most_up);
         let kept = one - R::select(rough, self.rough_cut_ratio, zero);
-        (R::select(first, n.peak_n, base * (one + correction) * kept), dwell)
+        let moved = base * (one + correction.named("correction")) * kept.named("kept_share");
+        (R::select(first, n.peak_n, moved).named("next_ceiling_n"), dwell)
     }
 
     /// κ in s, after an impact of some travel.
@@ -402,7 +419,7 @@ impl<R: Real> TimedImpacts<R> {
     fn next_lead(&self, n: &ImpactNumbers<R>, travel: R) -> R {
         let beyond = n.step_m.lt(travel);
         let factor = R::select(beyond, R::constant(LEAD_UP), R::constant(LEAD_DOWN));
-        let lead = (n.lead_s * factor).clamp(self.lead_min_s, self.lead_max_s);
+        let lead = (n.lead_s * factor).clamp(self.lead_min_s, self.lead_max_s).named("adapted_s");
         R::select(n.seen_to_slip.is_set(), lead, n.lead_s)
     }
 }

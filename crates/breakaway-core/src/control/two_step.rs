@@ -4,6 +4,7 @@ use super::{
     ControllerState, ForceRamp, Measurement, Pid, PidState, TimedImpacts, TimedImpactsState,
     VibratingPid, VibrationState,
 };
+use crate::name::{Name, within};
 use crate::real::Real;
 use crate::reference::Setpoint;
 
@@ -66,17 +67,18 @@ pub enum SecondStep<R> {
 
 impl<R: Real> TwoStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TwoStep<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoStep<S> {
         TwoStep {
-            breakaway: self.breakaway.map(f),
-            vibration: self.vibration.map(f),
-            breakaway_travel_m: f("breakaway_travel_m", self.breakaway_travel_m),
+            breakaway: within!("breakaway", self.breakaway, f),
+            vibration: within!("vibration", self.vibration, f),
+            breakaway_travel_m: f(Name::of("breakaway_travel_m"), self.breakaway_travel_m),
         }
     }
 
     /// The force in N at a sample. Both steps are computed; what the other one moved is dropped.
     #[inline(always)]
     pub(super) fn step(&self, state: &mut ControllerState<R>, measured: &Measurement<R>) -> R {
+        R::section("supervisor: loose once x > breakaway travel");
         let before = state.vibration;
         let was_vibrating = before.vibrating.is_set();
         let vibrating = was_vibrating | self.breakaway_travel_m.lt(measured.position_m);
@@ -105,9 +107,10 @@ impl<R: Real> TwoStep<R> {
                 hit
             }
         };
+        R::section("supervisor: what moves is that of the step it is in");
         state.vibration = VibrationState::select(vibrating, &two, &one);
         state.vibration.vibrating = R::flag(vibrating);
-        R::select(vibrating, hit, push)
+        R::select(vibrating, hit, push).named("two_step_n")
     }
 
     /// The speed in m/s that the part is meant to have: that of the step it is in.
@@ -127,7 +130,7 @@ impl<R: Real> TwoStep<R> {
 
 impl<R: Real> FirstStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> FirstStep<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FirstStep<S> {
         match self {
             Self::Pid(pid) => FirstStep::Pid(pid.map(f)),
             Self::ForceRamp(c) => FirstStep::ForceRamp(c.map(f)),
@@ -170,7 +173,7 @@ impl<R: Real> FirstStep<R> {
 
 impl<R: Real> SecondStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> SecondStep<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SecondStep<S> {
         match self {
             Self::FmVibration(c) => SecondStep::FmVibration(c.map(f)),
             Self::TimedImpacts(c) => SecondStep::TimedImpacts(c.map(f)),

@@ -3,6 +3,7 @@
 use super::fm_vibration::half_sine;
 use super::{Measurement, SteadyFeed};
 use crate::actuator::Command;
+use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
 
@@ -67,8 +68,11 @@ impl<R: Real> VibratedFeedState<R> {
 
 impl<R: Real> VibratedFeed<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> VibratedFeed<S> {
-        VibratedFeed { feed: self.feed.map(f), pulses: self.pulses.map(f) }
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> VibratedFeed<S> {
+        VibratedFeed {
+            feed: within!("feed", self.feed, f),
+            pulses: within!("pulses", self.pulses, f),
+        }
     }
 
     /// The command at a sample.
@@ -76,14 +80,17 @@ impl<R: Real> VibratedFeed<R> {
     pub fn step(&self, state: &mut VibratedFeedState<R>, measured: &Measurement<R>) -> Command<R> {
         let (zero, one, period) = (R::zero(), R::one(), measured.period_s);
         let p = &self.pulses;
-        let new = period / (p.force_filter_s + period);
-        state.mean_n = new.mul_add(measured.force_n - state.mean_n, state.mean_n);
-        let u = state.phase_cycles / (p.frequency_hz * p.pulse_width_s);
+        R::section("stack pulses: share = min(alpha F_mean / F_stack, 1) sin^2(pi u)");
+        let new = (period / (p.force_filter_s + period)).named("new_share");
+        let changed_n = measured.force_n - state.mean_n;
+        state.mean_n = new.mul_add(changed_n, state.mean_n).named("mean_n");
+        let duty = (p.frequency_hz * p.pulse_width_s).named("duty");
+        let u = (state.phase_cycles / duty).named("progress");
         let shape = half_sine(u.min(one));
-        let share = state.amplitude * shape * shape;
-        let next = p.frequency_hz.mul_add(period, state.phase_cycles);
+        let share = (state.amplitude * shape * shape).named("stack_share");
+        let next = p.frequency_hz.mul_add(period, state.phase_cycles).named("next_cycles");
         let starts = one.le(next);
-        let wanted = p.amplitude_ratio * state.mean_n / p.stack_force_n;
+        let wanted = (p.amplitude_ratio * state.mean_n / p.stack_force_n).named("wanted_share");
         state.amplitude = R::select(starts, wanted.clamp(zero, one), state.amplitude);
         state.phase_cycles = next - R::flag(starts);
         let feed_m_per_s = self.feed.speed(&mut state.elapsed_s, period);

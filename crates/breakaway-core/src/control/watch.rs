@@ -57,6 +57,7 @@ impl<R: Real> Watch<R> {
         measured: &Measurement<R>,
         pushing: R::Mask,
     ) -> R::Mask {
+        R::section("watch: stops for good at a measurement that can not be true");
         let (zero, x) = (R::zero(), measured.position_m);
         let finite = R::constant(f64::INFINITY);
         let numbers = x.abs().lt(finite)
@@ -68,7 +69,8 @@ impl<R: Real> Watch<R> {
         let jumped = began & self.jump_max_m.lt((x - state.last_m).abs());
         let same = began & x.le(state.last_m) & state.last_m.le(x);
         let pushed_s = R::select(pushing, measured.period_s, zero);
-        state.unchanged_s = R::select(same, state.unchanged_s + pushed_s, zero);
+        state.unchanged_s =
+            R::select(same, state.unchanged_s + pushed_s, zero).named("unchanged_s");
         let frozen = self.frozen_max_s.lt(state.unchanged_s);
         let clock = !zero.lt(measured.period_s);
         let number = |value: f64| R::constant(value);
@@ -77,7 +79,7 @@ impl<R: Real> Watch<R> {
         reason = R::select(jumped, number(2.0), reason);
         reason = R::select(!numbers, number(1.0), reason);
         let stopped = zero.lt(state.reason);
-        state.reason = R::select(stopped, state.reason, reason);
+        state.reason = R::select(stopped, state.reason, reason).named("reason");
         state.last_m = R::select(numbers, x, state.last_m);
         state.began = R::one();
         !zero.lt(state.reason)

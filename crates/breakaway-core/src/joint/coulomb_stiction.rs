@@ -2,6 +2,7 @@
 
 use super::lugre::stribeck_level;
 use super::{At, Rigid, engaged_level};
+use crate::name::Name;
 use crate::real::Real;
 
 /// Coulomb friction with stiction, without bristles.
@@ -39,16 +40,18 @@ pub struct CoulombStiction<R> {
 
 impl<R: Real> CoulombStiction<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> CoulombStiction<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> CoulombStiction<S> {
         let v_s = self.stribeck_velocity_m_per_s;
         CoulombStiction {
-            stiction_n: f("stiction_n", self.stiction_n),
-            coulomb_n: f("coulomb_n", self.coulomb_n),
-            viscous_n_s_per_m: self.viscous_n_s_per_m.map(|sigma| f("viscous_n_s_per_m", sigma)),
-            stribeck_velocity_m_per_s: f("stribeck_velocity_m_per_s", v_s),
-            engagement_length_m: f("engagement_length_m", self.engagement_length_m),
-            residual_n: f("residual_n", self.residual_n),
-            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
+            stiction_n: f(Name::of("stiction_n"), self.stiction_n),
+            coulomb_n: f(Name::of("coulomb_n"), self.coulomb_n),
+            viscous_n_s_per_m: self
+                .viscous_n_s_per_m
+                .map(|sigma| f(Name::of("viscous_n_s_per_m"), sigma)),
+            stribeck_velocity_m_per_s: f(Name::of("stribeck_velocity_m_per_s"), v_s),
+            engagement_length_m: f(Name::of("engagement_length_m"), self.engagement_length_m),
+            residual_n: f(Name::of("residual_n"), self.residual_n),
+            backward_ratio: self.backward_ratio.map(|ratio| f(Name::of("backward_ratio"), ratio)),
         }
     }
 

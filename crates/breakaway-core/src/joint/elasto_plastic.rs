@@ -2,6 +2,7 @@
 
 use super::onset::slip_onset;
 use super::{At, Bristle, Lugre};
+use crate::name::Name;
 use crate::real::Real;
 
 /// LuGre friction whose bristle gives back all of its first stretch.
@@ -30,10 +31,10 @@ pub struct ElastoPlastic<R> {
 
 impl<R: Real> ElastoPlastic<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ElastoPlastic<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ElastoPlastic<S> {
         ElastoPlastic {
             friction: self.friction.map(f),
-            elastic_share: f("elastic_share", self.elastic_share),
+            elastic_share: f(Name::of("elastic_share"), self.elastic_share),
         }
     }
 
@@ -45,7 +46,7 @@ impl<R: Real> ElastoPlastic<R> {
         let (v, k) = (at.velocity_m_per_s, at.ahead_s);
         let bristle = self.yielding(self.friction.freeze(at), z, v);
         let g = bristle.friction_level_n;
-        let z_ahead = g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g);
+        let z_ahead = (g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g)).named("ahead_m");
         self.yielding(bristle, z_ahead, v)
     }
 

@@ -13,6 +13,6 @@ use crate::real::Real;
 /// at the end of the guide: m g in the paper. Not valid beyond `l_f`, where the joint is gone.
 #[inline(always)]
 pub fn engaged_level<R: Real>(seated_n: R, end_n: R, length_m: R, factor: R, x: R) -> R {
-    let slope = (end_n - seated_n) / length_m;
-    (slope * factor).mul_add(x.max(R::zero()), seated_n * factor)
+    let slope = ((end_n - seated_n) / length_m).named("slope_n_per_m");
+    (slope * factor).mul_add(x.max(R::zero()).named("engaged_m"), seated_n * factor)
 }

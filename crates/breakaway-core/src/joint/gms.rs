@@ -4,6 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::{At, Lugre};
+use crate::name::Name;
 use crate::real::Real;
 
 /// The most elements that a Maxwell-slip joint can have.
@@ -45,10 +46,10 @@ impl<R: Real> ElementState<R> {
 
 impl<R: Copy> ElementState<R> {
     /// Applies `f` to every number: all deflections, then all slips.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> ElementState<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ElementState<S> {
         ElementState {
-            deflection_m: core::array::from_fn(|i| f(ELEMENT_M[i], self.deflection_m[i])),
-            slip: core::array::from_fn(|i| f(SLIP[i], self.slip[i])),
+            deflection_m: core::array::from_fn(|i| f(Name::of(ELEMENT_M[i]), self.deflection_m[i])),
+            slip: core::array::from_fn(|i| f(Name::of(SLIP[i]), self.slip[i])),
         }
     }
 
@@ -158,13 +159,15 @@ pub(crate) struct ElementsAhead<R> {
 impl<R: Real> Gms<R> {
     /// Applies `f` to every number: those of [`Lugre`], the attraction, all stiffness shares, all
     /// level shares.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Gms<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Gms<S> {
         Gms {
             friction: self.friction.map(f),
-            attraction_n_per_s: f("attraction_n_per_s", self.attraction_n_per_s),
+            attraction_n_per_s: f(Name::of("attraction_n_per_s"), self.attraction_n_per_s),
             elements: self.elements,
-            stiffness_shares: self.stiffness_shares.map(|share| f("stiffness_share", share)),
-            level_shares: self.level_shares.map(|share| f("level_share", share)),
+            stiffness_shares: self
+                .stiffness_shares
+                .map(|share| f(Name::of("stiffness_shares"), share)),
+            level_shares: self.level_shares.map(|share| f(Name::of("level_shares"), share)),
         }
     }
 
@@ -209,15 +212,16 @@ impl<R: Real> Elements<'_, R> {
     /// ```
     #[inline(always)]
     pub(crate) fn ahead(&self, state: &mut ElementState<R>, k: R) -> ElementsAhead<R> {
+        R::section("elements: each sticks or slips, z_m = p + s v_m over half a step");
         let ElementState { deflection_m, slip } = state;
         let (zero, one) = (R::zero(), R::one());
         let (law, g) = (self.law, self.friction_level_n);
         let k_e = law.friction.stiffness_n_per_m;
-        let direction = self.velocity_m_per_s.sign();
-        let travel = (k + k) * self.velocity_m_per_s.abs();
-        let per_travel = one / travel;
-        let y = (k * law.attraction_n_per_s / g).min(one);
-        let kept = one / (one + y);
+        let direction = self.velocity_m_per_s.sign().named("direction");
+        let travel = ((k + k) * self.velocity_m_per_s.abs()).named("travel_m");
+        let per_travel = (one / travel).named("per_travel_per_m");
+        let y = (k * law.attraction_n_per_s / g).min(one).named("attraction");
+        let kept = (one / (one + y)).named("attraction_kept");
         let mut out = ElementsAhead {
             offset_m: *deflection_m,
             gain_s: [zero; ELEMENTS_MAX],
@@ -227,27 +231,28 @@ impl<R: Real> Elements<'_, R> {
         let (mut offset, mut gain, mut mean) = (zero, zero, zero);
         for i in 0..law.count() {
             let (z, share) = (deflection_m[i], law.stiffness_shares[i]);
-            let limit = law.level_shares[i] * g / (share * k_e);
+            let limit = (law.level_shares[i] * g / (share * k_e)).named("limit_m");
             // How far it is to the limit, and how far the attraction takes it, along the motion.
-            let room = (-direction).mul_add(z, limit);
-            let pulled = room * ((y + y) * kept);
+            let room = (-direction).mul_add(z, limit).named("room_m");
+            let pulled = (room * ((y + y) * kept)).named("pulled_m");
             let slipping = zero.lt(slip[i] * direction) | room.lt(zero);
             let slips_on = slipping & pulled.lt(travel);
             let reaches = room.lt(travel);
-            let stretch = R::select(reaches, (room * per_travel).max(zero), one);
-            let follows = (direction * y * kept).mul_add(room, z);
-            out.offset_m[i] = R::select(slips_on, follows, z);
-            out.gain_s[i] = R::select(slips_on, zero, stretch * k);
-            slip[i] = R::select(slipping | reaches, direction, zero);
-            offset = share.mul_add(out.offset_m[i], offset);
-            gain = share.mul_add(out.gain_s[i], gain);
-            mean = share.mul_add(z, mean);
+            let stretch = R::select(reaches, (room * per_travel).max(zero), one).named("stretch");
+            let follows = (direction * y * kept).mul_add(room, z).named("follows_m");
+            out.offset_m[i] = R::select(slips_on, follows, z).named("offset_m");
+            out.gain_s[i] = R::select(slips_on, zero, stretch * k).named("gain_s");
+            slip[i] = R::select(slipping | reaches, direction, zero).named("slip");
+            offset = share.mul_add(out.offset_m[i], offset).named("offset_sum_m");
+            gain = share.mul_add(out.gain_s[i], gain).named("gain_sum_s");
+            mean = share.mul_add(z, mean).named("mean_m");
         }
-        let c_over_k = self.damping_n_s_per_m / k;
-        let per_stretch = k_e + c_over_k;
+        let c_over_k = (self.damping_n_s_per_m / k).named("damping_n_per_m");
+        let per_stretch = (k_e + c_over_k).named("per_stretch_n_per_m");
         let viscous = law.friction.viscous_n_s_per_m.unwrap_or(zero);
-        out.force_at_rest_n = per_stretch.mul_add(offset, -(c_over_k * mean));
-        out.resistance_n_s_per_m = per_stretch.mul_add(gain, viscous);
+        out.force_at_rest_n =
+            per_stretch.mul_add(offset, -(c_over_k * mean)).named("force_at_rest_n");
+        out.resistance_n_s_per_m = per_stretch.mul_add(gain, viscous).named("resistance_n_s_per_m");
         out
     }
 
@@ -261,11 +266,13 @@ impl<R: Real> Elements<'_, R> {
         v: R,
         engaged: R::Mask,
     ) -> R {
+        R::section("elements, end of the step");
         let (zero, law) = (R::zero(), self.law);
         let mut mean = zero;
         for i in 0..law.count() {
             let z_mid = ahead.gain_s[i].mul_add(v, ahead.offset_m[i]);
             let z = R::select(engaged, (z_mid + z_mid) - state.deflection_m[i], zero);
+            let z = z.named("deflection_m");
             mean = law.stiffness_shares[i].mul_add(z, mean);
             state.deflection_m[i] = z;
             state.slip[i] = R::select(engaged, state.slip[i], zero);

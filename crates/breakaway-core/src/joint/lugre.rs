@@ -3,6 +3,7 @@
 use core::f64::consts::LOG2_E;
 
 use super::{At, Bristle, engaged_level};
+use crate::name::Name;
 use crate::real::Real;
 
 /// Modified LuGre friction, equations (1) to (8).
@@ -51,21 +52,23 @@ pub struct Lugre<R> {
 
 impl<R: Real> Lugre<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Lugre<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Lugre<S> {
         let v_s = self.stribeck_velocity_m_per_s;
         Lugre {
-            stiction_n: f("stiction_n", self.stiction_n),
-            coulomb_n: f("coulomb_n", self.coulomb_n),
-            stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
-            damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
-            viscous_n_s_per_m: self.viscous_n_s_per_m.map(|sigma| f("viscous_n_s_per_m", sigma)),
-            stribeck_velocity_m_per_s: f("stribeck_velocity_m_per_s", v_s),
-            engagement_length_m: f("engagement_length_m", self.engagement_length_m),
-            residual_n: f("residual_n", self.residual_n),
+            stiction_n: f(Name::of("stiction_n"), self.stiction_n),
+            coulomb_n: f(Name::of("coulomb_n"), self.coulomb_n),
+            stiffness_n_per_m: f(Name::of("stiffness_n_per_m"), self.stiffness_n_per_m),
+            damping_n_s_per_m: f(Name::of("damping_n_s_per_m"), self.damping_n_s_per_m),
+            viscous_n_s_per_m: self
+                .viscous_n_s_per_m
+                .map(|sigma| f(Name::of("viscous_n_s_per_m"), sigma)),
+            stribeck_velocity_m_per_s: f(Name::of("stribeck_velocity_m_per_s"), v_s),
+            engagement_length_m: f(Name::of("engagement_length_m"), self.engagement_length_m),
+            residual_n: f(Name::of("residual_n"), self.residual_n),
             damping_velocity_m_per_s: self
                 .damping_velocity_m_per_s
-                .map(|v_d| f("damping_velocity_m_per_s", v_d)),
-            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
+                .map(|v_d| f(Name::of("damping_velocity_m_per_s"), v_d)),
+            backward_ratio: self.backward_ratio.map(|ratio| f(Name::of("backward_ratio"), ratio)),
         }
     }
 
@@ -115,7 +118,7 @@ impl<R: Real> Lugre<R> {
     #[inline(always)]
     pub fn damping(&self, v: R) -> R {
         match self.damping_velocity_m_per_s {
-            Some(v_d) => self.damping_n_s_per_m * bell(v, v_d),
+            Some(v_d) => (self.damping_n_s_per_m * bell(v, v_d)).named("damping_n_s_per_m"),
             None => self.damping_n_s_per_m,
         }
     }
@@ -138,7 +141,8 @@ impl<R: Real> Lugre<R> {
 /// exp(−(v / scale)²) as 2^(v² s) with s = −log₂ e / scale², which does not change during a run.
 #[inline(always)]
 fn bell<R: Real>(v: R, scale: R) -> R {
-    (v * v * (-R::constant(LOG2_E) / (scale * scale))).exp2()
+    let per_square = (-R::constant(LOG2_E) / (scale * scale)).named("bell_s2_per_m2");
+    (v * v * per_square).named("bell_exponent").exp2()
 }
 
 /// The Stribeck curve g(v, x) in N of the levels [F_s0, F_c0] and F_end, multiplied by `factor`:
@@ -153,9 +157,11 @@ pub(super) fn stribeck_level<R: Real>(
     v: R,
     factor: R,
 ) -> R {
-    let coulomb = engaged_level(coulomb_n, end_n, length_m, factor, x);
-    let seated_peak = stiction_n - coulomb_n;
-    let peak = engaged_level(seated_peak, R::zero(), length_m, factor, x);
-    let (fraction, power) = (v * v * (-R::constant(LOG2_E) / (v_s * v_s))).exp2_parts();
-    fraction.mul_add(peak * power, coulomb)
+    R::section("friction level: g = F_c(x) + (F_s(x) - F_c(x)) exp(-(v / v_s)^2), equation (3)");
+    let coulomb = engaged_level(coulomb_n, end_n, length_m, factor, x).named("coulomb_n");
+    let seated_peak = (stiction_n - coulomb_n).named("seated_peak_n");
+    let peak = engaged_level(seated_peak, R::zero(), length_m, factor, x).named("peak_n");
+    let per_square = (-R::constant(LOG2_E) / (v_s * v_s)).named("stribeck_s2_per_m2");
+    let (fraction, power) = (v * v * per_square).named("stribeck_exponent").exp2_parts();
+    fraction.mul_add(peak * power, coulomb).named("level_n")
 }

@@ -22,6 +22,7 @@ pub use gms::{ELEMENTS_MAX, ElementState, Elements, Gms, default_shares};
 pub use lugre::Lugre;
 pub use two_region::TwoRegion;
 
+use crate::name::Name;
 use crate::plant::PlantState;
 use crate::real::Real;
 
@@ -188,7 +189,7 @@ pub enum Joint<R> {
 
 impl<R: Real> Joint<R> {
     /// Applies `f` to every number of the law.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> Joint<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Joint<S> {
         match self {
             Self::Lugre(law) => Joint::Lugre(law.map(f)),
             Self::TwoRegion(law) => Joint::TwoRegion(law.map(f)),

@@ -15,8 +15,9 @@ use crate::real::Real;
 #[inline(always)]
 pub(super) fn slip_onset<R: Real>(share: R, z: R, v: R, stiffness_n_per_m: R, g: R) -> R {
     let (zero, one) = (R::zero(), R::one());
-    let used = z.abs() * stiffness_n_per_m / g;
-    let s = ((used - share) / (one - share)).clamp(zero, one);
+    R::section("slip onset: alpha = S((|z| k_e / g - e) / (1 - e)) while z v > 0");
+    let used = (z.abs() * stiffness_n_per_m / g).named("used_share");
+    let s = ((used - share) / (one - share)).clamp(zero, one).named("onset_progress");
     let step = s * s * (R::constant(-2.0)).mul_add(s, R::constant(3.0));
-    R::select(zero.lt(z * v), step, zero)
+    R::select(zero.lt(z * v), step, zero).named("onset")
 }

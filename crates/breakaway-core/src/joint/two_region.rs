@@ -1,6 +1,7 @@
 //! The two-region law that the paper designs its controller with.
 
 use super::{Bristle, JointState, engaged_level};
+use crate::name::Name;
 use crate::real::Real;
 
 /// Bristle spring and damper while stuck, Coulomb force while sliding: equation (9).
@@ -34,15 +35,15 @@ pub struct TwoRegion<R> {
 
 impl<R: Real> TwoRegion<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(&'static str, R) -> S) -> TwoRegion<S> {
+    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoRegion<S> {
         TwoRegion {
-            stiction_n: f("stiction_n", self.stiction_n),
-            coulomb_n: f("coulomb_n", self.coulomb_n),
-            stiffness_n_per_m: f("stiffness_n_per_m", self.stiffness_n_per_m),
-            damping_n_s_per_m: f("damping_n_s_per_m", self.damping_n_s_per_m),
-            engagement_length_m: f("engagement_length_m", self.engagement_length_m),
-            residual_n: f("residual_n", self.residual_n),
-            backward_ratio: self.backward_ratio.map(|ratio| f("backward_ratio", ratio)),
+            stiction_n: f(Name::of("stiction_n"), self.stiction_n),
+            coulomb_n: f(Name::of("coulomb_n"), self.coulomb_n),
+            stiffness_n_per_m: f(Name::of("stiffness_n_per_m"), self.stiffness_n_per_m),
+            damping_n_s_per_m: f(Name::of("damping_n_s_per_m"), self.damping_n_s_per_m),
+            engagement_length_m: f(Name::of("engagement_length_m"), self.engagement_length_m),
+            residual_n: f(Name::of("residual_n"), self.residual_n),
+            backward_ratio: self.backward_ratio.map(|ratio| f(Name::of("backward_ratio"), ratio)),
         }
     }
 
@@ -67,17 +68,19 @@ impl<R: Real> TwoRegion<R> {
         v: R,
         level_factor: R,
     ) -> JointState<R> {
-        let direction = state.bristle_m.sign();
+        R::section("two regions: breaks loose at k_e |z| > F_s(x), catches when v turns");
+        let direction = state.bristle_m.sign().named("direction");
         let level_factor = match self.backward_ratio {
             Some(ratio) => level_factor * R::select(direction.lt(R::zero()), ratio, R::one()),
             None => level_factor,
         };
-        let elastic = (self.stiffness_n_per_m * state.bristle_m).abs();
+        let elastic = (self.stiffness_n_per_m * state.bristle_m).abs().named("elastic_n");
         let slips_on = state.sliding.is_set() & R::zero().lt(v * direction);
         let breaks = !state.sliding.is_set() & (self.stiction(x) * level_factor).lt(elastic);
         let engaged = x.lt(self.engagement_length_m);
         let sliding = engaged & (slips_on | breaks);
         let slip_deflection = direction * self.coulomb(x) * level_factor / self.stiffness_n_per_m;
+        let slip_deflection = slip_deflection.named("slip_deflection_m");
         JointState {
             bristle_m: R::select(
                 engaged,

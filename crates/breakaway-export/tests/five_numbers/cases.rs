@@ -17,7 +17,7 @@ use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::plant::Integrator;
 use breakaway_core::reference::{Motion, Reference, Step, Trapezoid};
 use breakaway_core::sensor::{Noise, Sensor, Sensors};
-use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Real};
+use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Name, Real};
 
 /// Samples that each case is run for.
 pub(crate) const SAMPLES: u32 = 400;
@@ -436,7 +436,7 @@ impl<R: Real> Run<R> {
     /// At rest, with the extraction's numbers and the limits cast by `cast`.
     pub(crate) fn new(
         extraction: &Extraction<f64>,
-        cast: &mut impl FnMut(&'static str, f64) -> R,
+        cast: &mut impl FnMut(Name<'_>, f64) -> R,
     ) -> Self {
         Self {
             extraction: extraction.map(cast),
@@ -455,8 +455,8 @@ impl<R: Real> Run<R> {
     /// Everything that moves, with its name: first the state, then the metrics.
     pub(crate) fn moving(&self) -> Vec<(&'static str, R)> {
         let mut numbers = Vec::with_capacity(40);
-        self.state.map(&mut |name, value| numbers.push((name, value)));
-        self.metrics.map(&mut |name, value| numbers.push((name, value)));
+        self.state.map(&mut |name, value| numbers.push((name.field(), value)));
+        self.metrics.map(&mut |name, value| numbers.push((name.field(), value)));
         numbers
     }
 }

@@ -167,11 +167,12 @@ fn a_recorded_step_has_the_bits_of_the_step() {
 fn the_value_of_a_dual_has_the_bits_of_the_scalar_run() {
     for case in cases::all() {
         let mut run = scalar(&case, 0);
-        let mut dual = Run::<Dual<f64, 2>>::new(&run.extraction, &mut |name, value| match name {
-            "stiction_n" => Dual::variable(value, 0),
-            "kp_n_per_m" => Dual::variable(value, 1),
-            _ => Dual::constant(value),
-        });
+        let mut dual =
+            Run::<Dual<f64, 2>>::new(&run.extraction, &mut |name, value| match name.field() {
+                "stiction_n" => Dual::variable(value, 0),
+                "kp_n_per_m" => Dual::variable(value, 1),
+                _ => Dual::constant(value),
+            });
         for n in 0..SAMPLES {
             run.step(draw(0, n));
             dual.step(cast(&draw(0, n), Dual::constant));
@@ -190,7 +191,7 @@ fn the_derivative_of_a_dual_is_the_slope_of_the_scalar_run() {
     let case = cases::smooth();
     let moved = |parameter: &str, change: f64| {
         let mut run = Run::<f64>::new(&case.extraction, &mut |name, value| {
-            if name == parameter { value * (1.0 + change) } else { value }
+            if name.field() == parameter { value * (1.0 + change) } else { value }
         });
         for _ in 0..SMOOTH_SAMPLES {
             run.step(Draws { disturbance: 0.5, ..Draws::none() });
@@ -201,14 +202,15 @@ fn the_derivative_of_a_dual_is_the_slope_of_the_scalar_run() {
     };
     let index = |name: &str| PARAMETERS.iter().position(|&parameter| parameter == name);
     let mut dual = Run::<Dual<f64, 4>>::new(&case.extraction, &mut |name, value| {
-        index(name).map_or(Dual::constant(value), |i| Dual::variable(value, i))
+        index(name.field()).map_or(Dual::constant(value), |i| Dual::variable(value, i))
     });
     let held = Draws { disturbance: Dual::constant(0.5), ..Draws::none() };
     (0..SMOOTH_SAMPLES).for_each(|_| dual.step(held));
 
     for (i, parameter) in PARAMETERS.into_iter().enumerate() {
         let mut value = 0.0;
-        case.extraction.map(&mut |name, v| value = if name == parameter { v } else { value });
+        case.extraction
+            .map(&mut |name, v| value = if name.field() == parameter { v } else { value });
         let change = 1e-5;
         let (above, below) = (moved(parameter, change), moved(parameter, -change));
         for (j, (name, ours)) in dual.moving().into_iter().enumerate() {
@@ -281,7 +283,7 @@ fn a_diverging_lane_disturbs_no_other_and_keeps_its_metrics() {
     for case in cases::all().into_iter().step_by(5) {
         let bad = |lane: u64| {
             varied(&case.extraction, lane).map(&mut |name, value| {
-                let hit = BAD.iter().find(|bad| bad.0 == lane as usize && bad.1 == name);
+                let hit = BAD.iter().find(|bad| bad.0 == lane as usize && bad.1 == name.field());
                 hit.map_or(value, |bad| value * bad.2)
             })
         };

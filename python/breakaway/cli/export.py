@@ -1,0 +1,66 @@
+"""``breakaway export``: the code that was simulated, for other places."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from breakaway.cli.show import busy, say, say_json
+
+export = typer.Typer(
+    help="Write a scenario's controller or plant as code that runs elsewhere.",
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+)
+
+
+class What(StrEnum):
+    """What of a scenario is exported."""
+
+    CONTROLLER = "controller"
+    PLANT = "plant"
+    LOOP = "loop"
+
+
+class Real(StrEnum):
+    """The real type."""
+
+    DOUBLE = "double"
+    FLOAT = "float"
+
+
+@export.command("c")
+def export_c(
+    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    out: Annotated[Path, typer.Option(help="Folder for the files.", metavar="DIR")],
+    what: Annotated[
+        What, typer.Option(help="The controller with its reference, the plant, or both closed.")
+    ] = What.CONTROLLER,
+    real: Annotated[Real, typer.Option(help="The real type of the code.")] = Real.DOUBLE,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+) -> None:
+    """Write self-contained C99: header, source, test program, CMakeLists.txt, README.
+
+    The code computes the same bits as the simulation in the same real type,
+    without allocation, and its numbers are parameters that may be changed at
+    run time. Kinds and options of the scenario are fixed in it.
+    """
+    from breakaway.export import export_c as write
+    from breakaway.scenario import load_scenario
+
+    asked = load_scenario(scenario)
+    with busy("recording the step ..."):
+        written = write(asked, what=what.value, out=out, real=real.value)
+    if json:
+        files = [str(path) for path in written.files]
+        say_json({"what": written.what, "real": written.real, "files": files})
+        return
+    for path in written.files:
+        say(f"wrote {path}")
+    say(
+        f"Build and test it: cmake -S {out} -B {out}/build && cmake --build {out}/build && "
+        f"ctest --test-dir {out}/build"
+    )

@@ -1,0 +1,54 @@
+"""`breakaway export c` writes C, and says what it wrote."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Call = Callable[..., Any]
+
+
+@pytest.mark.parametrize("what", ["controller", "plant", "loop"])
+def test_writes_every_file(call: Call, tmp_path: Path, what: str) -> None:
+    out = tmp_path / "rig"
+    done = call("export", "c", "paper_as_computed", "--what", what, "--out", out, "--real", "float")
+    assert done.exit_code == 0
+    names = sorted(path.name for path in out.iterdir())
+    assert names == sorted(
+        [
+            f"{what}.c",
+            f"{what}.h",
+            f"test_{what}.c",
+            "CMakeLists.txt",
+            "README.md",
+            "interface.json",
+        ]
+    )
+    for name in names:
+        assert f"wrote {out / name}" in done.stdout.replace("\n", "") or name in done.stdout
+
+
+def test_prints_one_document(call: Call, tmp_path: Path) -> None:
+    done = call("export", "c", "paper_as_computed", "--out", tmp_path, "--json")
+    told = json.loads(done.stdout)
+    assert (told["what"], told["real"]) == ("controller", "double")
+    assert str(tmp_path / "controller.c") in told["files"]
+
+
+def test_a_typo_is_named(call: Call, tmp_path: Path) -> None:
+    done = call("export", "c", "paper_as_computed", "--what", "motor", "--out", tmp_path)
+    assert done.exit_code == 2
+    assert "'controller', 'plant', 'loop'" in done.stderr
+    done = call("export", "c", "paper_as_computet", "--out", tmp_path)
+    assert done.exit_code == 2
+    assert "paper_as_computed" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_can_not_be_written_is_named(call: Call, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    done = call("export", "c", "paper_as_computed", "--out", tmp_path / "file")
+    assert done.exit_code == 3
+    assert "is a file, not a folder" in done.stderr
