@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from subprocess import TimeoutExpired
 from tempfile import TemporaryDirectory
 
 from tests.firmware import tools
@@ -17,7 +18,7 @@ from tests.firmware.proof import (
     measure,
 )
 
-ROW = "{:36} {:30} {:>5} {:>17} {:>6} {:>5} {:>5}"
+ROW = "{:36} {:30} {:>6} {:>17} {:>7} {:>6} {:>5} {:>5}"
 BYTES = "{:36} {:>6} {:>11} {:>8} {:>6} {:>6} {:>6}  {}"
 LOOP = "{:36} {:>8} {:>24} {:>24} {:>12} {:>6}"
 
@@ -28,7 +29,7 @@ def main() -> int:
         tools.check_tools()
         with TemporaryDirectory() as name:
             return 0 if _prove(Path(name)) else 1
-    except tools.ProofError as error:
+    except (tools.ProofError, TimeoutExpired) as error:
         print(f"firmware: {error}", file=sys.stderr)
         return 2
 
@@ -51,15 +52,21 @@ def _print_steps(found: list[Measured]) -> None:
     print(
         f"Exported controllers in float on a Cortex-M4F (QEMU, mps2-an386, -icount shift=0), "
         f"{STEPS} steps each.\nBits: same as the core's f32, or the first step that differs. "
-        f"Digest: SHA-256 of all outputs.\nInstructions of a step, from its first to its return, "
+        f"Digest: SHA-256 of all outputs.\nValues: different ones of the first output.\nInstructions of a step, from its first to its return, "
         f"checks of the inputs included.\n"
     )
-    print(ROW.format("controller", "what it is", "bits", "digest", "mean", "most", "limit"))
+    print(
+        ROW.format("controller", "what it is", "bits", "digest", "values", "mean", "most", "limit")
+    )
     for one in found:
         bits = "same" if one.first_difference is None else str(one.first_difference)
         mean, most = f"{one.instructions.mean():.1f}", int(one.instructions.max())
         limit = one.case.limit or "-"
-        print(ROW.format(one.case.name, one.case.what, bits, one.digest, mean, most, limit))
+        print(
+            ROW.format(
+                one.case.name, one.case.what, bits, one.digest, one.distinct, mean, most, limit
+            )
+        )
 
 
 def _print_bytes(found: list[Measured]) -> None:
@@ -91,13 +98,14 @@ def _print_loops(closed: list[Closed]) -> None:
     print(
         "\nProcessor in the loop: the controller on the Cortex-M4F, the plant on the host, in "
         "float.\nBits: command, reference, position and velocity of every sample as in the core's "
-        "own run in f32,\nand the plant as the core's under the same commands.\n"
+        "own run in f32,\nand the plant as the core's under the same commands. A run that "
+        "diverges ends there, as a simulation does.\n"
     )
     heads = ("samples", "IAE, m s", "IAE of the core in f32", "in f64", "bits")
     print(LOOP.format("scenario", *heads))
     for one in closed:
         differs = [n for n in (one.first_difference, one.first_plant_difference) if n is not None]
-        numbers = (one.iae_m_s.hex(), one.core_iae_m_s.hex(), f"{one.double_iae_m_s:.6e}")
+        numbers = (repr(one.iae_m_s), repr(one.core_iae_m_s), f"{one.double_iae_m_s:.6e}")
         bits = min(differs) if differs else "same"
         print(LOOP.format(one.case.name, one.samples, *numbers, bits))
 

@@ -40,7 +40,9 @@ class Measured:
         """Whether the bits agree and the limit is kept."""
         limit = self.case.limit
         fits = limit is None or int(self.instructions.max()) <= limit
-        return self.first_difference is None and fits and self.distinct > 1
+        return (
+            self.first_difference is None and fits and self.distinct > 1 and self.sizes.static == 0
+        )
 
 
 def exported(case: Case, folder: Path) -> Recording:
@@ -124,15 +126,18 @@ def close_the_loop(case: Case, folder: Path) -> Closed:
     bk.export_c(case.scenario, what="plant", real="float", out=folder)
     plant = record(resolved, "plant", "float")
     names = ["command_force_n", "reference_m", *(one.name for one in plant.outputs)]
-    rows = _run_both(folder, resolved.samples).reshape(-1, len(names))
+    loop = _until_it_diverges(
+        resolved, reference(resolved, "loop", "float", np.zeros((resolved.samples, 3)))
+    )
+    samples = len(loop["position_m"])
+    rows = _run_both(folder, samples).reshape(-1, len(names))
     ours = dict(zip(names, rows.T, strict=True))
-    commands = np.zeros((resolved.samples, 3))
+    commands = np.zeros((samples, 3))
     commands[:, 0] = ours["command_force_n"]
-    loop = reference(resolved, "loop", "float", np.zeros((resolved.samples, 3)))
     alone = reference(resolved, "plant", "float", commands)
     return Closed(
         case=case,
-        samples=resolved.samples,
+        samples=samples,
         iae_m_s=_iae(resolved, ours["reference_m"], ours["position_m"]),
         core_iae_m_s=_iae(resolved, loop["reference_m"], loop["position_m"]),
         double_iae_m_s=float(bk.simulate(case.scenario).metrics.iae_m_s),
@@ -180,6 +185,25 @@ def _iae(
     position_m: NDArray[np.float32] | NDArray[np.float64],
 ) -> float:
     """IAE = sum of |r - x| T_s over the samples, of numbers in f32, summed in f64."""
-    at_samples = np.concatenate([[0.0], position_m[:-1].astype(np.float64)])
-    errors = np.abs(reference_m.astype(np.float64) - at_samples)
+    errors = _errors(reference_m, position_m)
     return float(errors.sum() * scenario.timing.control_period_s)
+
+
+def _errors(
+    reference_m: NDArray[np.float32] | NDArray[np.float64],
+    position_m: NDArray[np.float32] | NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """|r - x| at each sample; the loop's position is that of the period's end."""
+    at_samples = np.concatenate([[0.0], position_m[:-1].astype(np.float64)])
+    errors: NDArray[np.float64] = np.abs(reference_m.astype(np.float64) - at_samples)
+    return errors
+
+
+def _until_it_diverges(
+    scenario: bk.Scenario, loop: dict[str, NDArray[np.float64]]
+) -> dict[str, NDArray[np.float64]]:
+    """Keep the samples that a simulation keeps: it ends where the error leaves its limit."""
+    errors = _errors(loop["reference_m"], loop["position_m"])
+    beyond = np.flatnonzero(~(errors <= scenario.limits.diverged_error_m))
+    kept = int(beyond[0]) if len(beyond) else len(errors)
+    return {name: column[:kept] for name, column in loop.items()}

@@ -19,8 +19,9 @@ MACHINE = "-machine mps2-an386 -cpu cortex-m4 -nographic -monitor none -serial n
 SEMIHOSTING = "-semihosting-config enable=on,target=native".split()
 ICOUNT = ["-icount", "shift=0"]
 
+NEWLIB = "libnewlib-arm-none-eabi"
 PACKAGES = {
-    "arm-none-eabi-gcc": "gcc-arm-none-eabi libnewlib-arm-none-eabi",
+    "arm-none-eabi-gcc": f"gcc-arm-none-eabi {NEWLIB}",
     "qemu-system-arm": "qemu-system-arm",
     "gcc": "gcc",
 }
@@ -34,12 +35,19 @@ class ProofError(Exception):
 def check_tools() -> None:
     """Say what to install where a program is missing."""
     missing = [program for program in PACKAGES if shutil.which(program) is None]
+    packages = " ".join(PACKAGES[program] for program in missing)
+    if "arm-none-eabi-gcc" not in missing and not _has_newlib():
+        missing, packages = [*missing, "newlib"], f"{packages} {NEWLIB}".strip()
     if missing:
-        packages = " ".join(PACKAGES[program] for program in missing)
         raise ProofError(
             f"{', '.join(missing)} not found. On Debian or Ubuntu:\n"
             f"    sudo apt-get install --no-install-recommends {packages}"
         )
+
+
+def _has_newlib() -> bool:
+    """Whether the cross compiler finds its C library: it prints a path, or the bare name."""
+    return "/" in run("arm-none-eabi-gcc", *CORTEX_M4F, "-print-file-name=libm.a")
 
 
 def run(*command: str | Path) -> str:
