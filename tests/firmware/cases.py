@@ -26,6 +26,8 @@ class Case:
     limit: int | None = None
     in_the_loop: bool = False
     """Whether a whole run is closed with the plant."""
+    episode: int = 500
+    """Steps from one reset to the next; within 400 the parts of `kinds` break loose and leave."""
 
 
 def cases() -> list[Case]:
@@ -36,9 +38,23 @@ def cases() -> list[Case]:
     )
     impacts = BASE.with_(controller=IMPACTS, actuator=CONTROLLERS["impacts"].actuator)
     return [
-        Case("paper_as_computed", "PID", paper, 60, True),
-        Case("paper_as_computed_vibration", "two steps, half-sine pulses", vibration, 250, True),
-        Case("paper_as_computed_vibration_bounded", "the same, anti-windup", bounded, 250, True),
+        Case("paper_as_computed", "PID", paper, 60, True, STEPS),
+        Case(
+            "paper_as_computed_vibration",
+            "two steps, half-sine pulses",
+            vibration,
+            250,
+            True,
+            STEPS,
+        ),
+        Case(
+            "paper_as_computed_vibration_bounded",
+            "the same, anti-windup",
+            bounded,
+            250,
+            True,
+            STEPS,
+        ),
         Case("fm_rectangular", "FM vibration, rectangular", CONTROLLERS["fm_rectangular"]),
         Case("fm_half_sine", "FM vibration, half sine", CONTROLLERS["fm_half_sine"]),
         Case("fm_raised_cosine", "FM vibration, raised cosine", CONTROLLERS["fm_raised_cosine"]),
@@ -51,26 +67,41 @@ def cases() -> list[Case]:
     ]
 
 
-def inputs_of(recording: Recording) -> NDArray[np.float32]:
-    """Compose the inputs: the loop's own course, in which the part breaks loose; then anything."""
-    scenario = recording.scenario
-    course = _course(scenario, min(scenario.samples, STEPS // 2))
+def inputs_of(recording: Recording, episode: int) -> NDArray[np.float32]:
+    """Compose the inputs of all episodes, one below the other."""
     rng = np.random.default_rng(11)
-    scales = (min(scenario.joint.engagement_length_m, 30 * LENGTH_M), 1.0, 500.0)
-    anything = np.column_stack([_wild(rng, STEPS - len(course), scale) for scale in scales])
+    episodes = [_episode(recording, rng, run, episode) for run in range(STEPS // episode)]
+    return np.concatenate(episodes).astype(np.float32)
+
+
+def _episode(
+    recording: Recording, rng: np.random.Generator, run: int, steps: int
+) -> NDArray[np.float64]:
+    """Compose the loop's own course, in which the part breaks loose; from some point on anything.
+
+    Each run draws other disturbances. In every second one anything comes early.
+    """
+    scenario = recording.scenario
+    course = _course(scenario, run, min(scenario.samples, steps))
+    kept = len(course) // 2 if run % 2 == 0 else len(course)
+    scales = (min(scenario.joint.engagement_length_m, 30 * LENGTH_M), 1.0, 2000.0)
+    anything = np.column_stack([_wild(rng, steps - kept, scale) for scale in scales])
     if scenario.watch is not None:
-        # A watch stops for good early: let it trust a traverse first.
-        trusted = len(anything) // 2
-        anything[:trusted, 0] = LENGTH_M * np.linspace(0.0, 1.2, trusted)
-        anything[:trusted, 1:] = 0.1
+        # A watch also takes what is no number; it stops for good then.
         anything[-3:, 0] = (np.nan, 0.0, np.inf)
-    return np.concatenate([course, anything]).astype(np.float32)
+    return np.concatenate([course[:kept], anything])
 
 
-def expected_of(recording: Recording, inputs: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Outputs of the core in f32."""
-    given = reference(recording.scenario, "controller", "float", inputs.astype(np.float64))
-    return np.column_stack([given[one.name] for one in recording.outputs]).astype(np.float32)
+def expected_of(
+    recording: Recording, inputs: NDArray[np.float32], episode: int
+) -> NDArray[np.float32]:
+    """Outputs of the core in f32, from rest in each episode."""
+    found = []
+    for first in range(0, len(inputs), episode):
+        rows = inputs[first : first + episode].astype(np.float64)
+        given = reference(recording.scenario, "controller", "float", rows)
+        found.append(np.column_stack([given[one.name] for one in recording.outputs]))
+    return np.concatenate(found).astype(np.float32)
 
 
 def read_by(recording: Recording, inputs: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -79,15 +110,15 @@ def read_by(recording: Recording, inputs: NDArray[np.float32]) -> NDArray[np.flo
     return np.ascontiguousarray(inputs[:, columns])
 
 
-def _course(scenario: bk.Scenario, steps: int) -> NDArray[np.float64]:
-    """What the sensors show from rest on in the loop: here taken for ideal."""
-    loop = reference(scenario, "loop", "float", np.zeros((steps, 3)))
+def _course(scenario: bk.Scenario, run: int, steps: int) -> NDArray[np.float64]:
+    """What ideal sensors show from rest on in the loop."""
+    loop = reference(scenario, "loop", "float", np.zeros((steps, 3)), run)
     names = ("position_m", "velocity_m_per_s", "applied_force_n")
     return np.column_stack([np.concatenate([[0.0], loop[name][:-1]]) for name in names])
 
 
 def _wild(rng: np.random.Generator, steps: int, scale: float) -> NDArray[np.float64]:
-    """Numbers that walk, stand still and jump, for 50 steps each."""
+    """Draw numbers that walk, stand still and jump, for 50 steps each."""
     blocks = steps // 50 + 1
     walk = np.cumsum(rng.normal(scale=0.004, size=steps)) % 2.0 - 0.5
     jumps = rng.uniform(-1.5, 1.5, steps)

@@ -30,7 +30,7 @@ class Measured:
     """The first step with an output of other bits than the core's."""
     digest: str
     distinct: int
-    """How many different values the first output takes."""
+    """How many different outputs there are, the reference apart."""
     instructions: NDArray[np.uint16]
     """Of each step, from its first to its return."""
     sizes: tools.Sizes
@@ -54,18 +54,19 @@ def exported(case: Case, folder: Path) -> Recording:
 def measure(case: Case, folder: Path) -> Measured:
     """Step a controller on the emulated processor, and compare every output with the core."""
     recording = exported(case, folder)
-    inputs = inputs_of(recording)
-    firmware = tools.cross_compile(folder, "measure")
+    inputs = inputs_of(recording, case.episode)
+    firmware = tools.cross_compile(folder, "measure", f"-DEPISODE={case.episode}u")
     given = tools.emulate(firmware, read_by(recording, inputs).tobytes(), *tools.ICOUNT)
-    expected = expected_of(recording, inputs)
+    expected = expected_of(recording, inputs, case.episode)
     if len(given) != expected.nbytes + 2 * STEPS:
         raise tools.ProofError(f"{case.name}: {len(given)} bytes came back")
+    commands = [n for n, one in enumerate(recording.outputs) if one.name != "reference_m"]
     outputs = np.frombuffer(given[: expected.nbytes], np.float32).reshape(expected.shape)
     return Measured(
         case=case,
         first_difference=first_difference(outputs, expected),
         digest=hashlib.sha256(outputs.tobytes()).hexdigest()[:16],
-        distinct=len(np.unique(outputs[:, 0])),
+        distinct=len(np.unique(outputs[:, commands], axis=0)),
         instructions=np.frombuffer(given[expected.nbytes :], np.uint16),
         sizes=tools.sizes(folder),
     )
@@ -86,7 +87,7 @@ def logged_instructions(case: Case, folder: Path) -> int:
     start, size = next(line.split()[:2] for line in listed if line.endswith(" controller_step"))
     log = folder / "instructions.log"
     options = ("-d", "exec,nochain", "-dfilter", f"0x{start}+0x{size}", "-D", str(log))
-    given = read_by(recording, inputs_of(recording))[:LOGGED_STEPS].tobytes()
+    given = read_by(recording, inputs_of(recording, case.episode))[:LOGGED_STEPS].tobytes()
     tools.emulate(firmware, given, *options, *tools.one_instruction_at_a_time())
     with log.open("rb") as lines:
         return sum(line.startswith(b"Trace") for line in lines)
@@ -156,7 +157,7 @@ def _run_both(folder: Path, samples: int) -> NDArray[np.float32]:
     pipe = subprocess.PIPE
     processor = subprocess.Popen(tools.emulator(firmware, *tools.ICOUNT), stdin=pipe, stdout=pipe)
     with processor:
-        command = [plant, str(samples), kept]
+        command = [str(plant), str(samples), str(kept)]
         done = subprocess.run(
             command, stdin=processor.stdout, stdout=processor.stdin, check=False, timeout=100
         )
@@ -202,8 +203,11 @@ def _errors(
 def _until_it_diverges(
     scenario: bk.Scenario, loop: dict[str, NDArray[np.float64]]
 ) -> dict[str, NDArray[np.float64]]:
-    """Keep the samples that a simulation keeps: it ends where the error leaves its limit."""
-    errors = _errors(loop["reference_m"], loop["position_m"])
-    beyond = np.flatnonzero(~(errors <= scenario.limits.diverged_error_m))
+    """Keep the samples that a simulation counts: up to an error or a force beyond its limit."""
+    errors, forces = _errors(loop["reference_m"], loop["position_m"]), loop["command_force_n"]
+    error_m, force_n = scenario.limits.diverged_error_m, scenario.limits.diverged_force_n
+    if error_m is None or force_n is None:
+        raise tools.ProofError(f"{scenario.name}: the limits are not resolved")
+    beyond = np.flatnonzero(~((errors <= error_m) & (np.abs(forces) <= force_n)))
     kept = int(beyond[0]) if len(beyond) else len(errors)
     return {name: column[:kept] for name, column in loop.items()}

@@ -12,12 +12,16 @@ from pathlib import Path
 HERE = Path(__file__).parent
 TARGET = HERE / "target"
 STRICT = (
-    "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -ffp-contract=off"
-).split()
-CORTEX_M4F = "-O2 -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16".split()
-MACHINE = "-machine mps2-an386 -cpu cortex-m4 -nographic -monitor none -serial none".split()
-SEMIHOSTING = "-semihosting-config enable=on,target=native".split()
-ICOUNT = ["-icount", "shift=0"]
+    *("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion"),
+    *("-Werror", "-ffp-contract=off"),
+)
+CORTEX_M4F = ("-O2", "-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
+MACHINE = (
+    *("-machine", "mps2-an386", "-cpu", "cortex-m4", "-nographic"),
+    *("-monitor", "none", "-serial", "none"),
+)
+SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
+ICOUNT = ("-icount", "shift=0")
 
 NEWLIB = "libnewlib-arm-none-eabi"
 PACKAGES = {
@@ -58,7 +62,7 @@ def run(*command: str | Path) -> str:
     return done.stdout
 
 
-def cross_compile(folder: Path, program: str) -> Path:
+def cross_compile(folder: Path, program: str, *options: str) -> Path:
     """Build the exported controller in a folder with one of the target's programs."""
     compiler = ("arm-none-eabi-gcc", *STRICT, *CORTEX_M4F)
     firmware = folder / f"{program}.elf"
@@ -66,7 +70,7 @@ def cross_compile(folder: Path, program: str) -> Path:
     run(*compiler, "-fstack-usage", "-c", folder / "controller.c", "-o", code)
     sources = [TARGET / f"{name}.c" for name in ("start", "semihosting", program)]
     linker_script = ("-nostartfiles", "-T", TARGET / "mps2_an386.ld")
-    run(*compiler, *linker_script, f"-I{folder}", code, *sources, "-o", firmware)
+    run(*compiler, *linker_script, *options, f"-I{folder}", code, *sources, "-o", firmware)
     return firmware
 
 

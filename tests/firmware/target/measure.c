@@ -1,5 +1,6 @@
 /*
  * Steps a controller through STEPS inputs and gives back every output, and how many instructions each step took.
+ * Every EPISODE steps it is reset.
  *
  * Under `-icount shift=0` an instruction takes 1 ns of the emulator's time, and SysTick counts 25 MHz: 40
  * instructions a tick. So each step is run TIMES = 120 times from the same state, and an empty function as often:
@@ -62,6 +63,9 @@ int main(void)
     SYSTICK_VALUE = 0u;
     SYSTICK_CONTROL = 5u; /* on, with the processor's clock */
     for (uint32_t n = 0u; n < STEPS; n++) {
+        if ((n % EPISODE) == 0u) {
+            controller_reset(&self);
+        }
         instructions[n] = instructions_of_a_step(&inputs[n]);
         (void)controller_step(&self, &inputs[n], &outputs[n]);
     }
