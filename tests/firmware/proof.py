@@ -156,11 +156,15 @@ def _run_both(folder: Path, samples: int) -> NDArray[np.float32]:
     tools.run(*run_on_host, *sources, "-lm", "-o", plant)
     pipe = subprocess.PIPE
     processor = subprocess.Popen(tools.emulator(firmware, *tools.ICOUNT), stdin=pipe, stdout=pipe)
+    command = [str(plant), str(samples), str(kept)]
     with processor:
-        command = [str(plant), str(samples), str(kept)]
-        done = subprocess.run(
-            command, stdin=processor.stdout, stdout=processor.stdin, check=False, timeout=100
-        )
+        try:
+            done = subprocess.run(
+                command, stdin=processor.stdout, stdout=processor.stdin, check=False, timeout=100
+            )
+        except subprocess.TimeoutExpired:
+            processor.kill()
+            raise
     if done.returncode != 0 or processor.returncode != 0:
         raise tools.ProofError(
             f"the loop broke: plant {done.returncode}, processor {processor.returncode}"

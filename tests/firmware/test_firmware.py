@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.firmware import tools
-from tests.firmware.proof import first_difference
+from tests.firmware.cases import cases
+from tests.firmware.proof import first_difference, measure
 
 ROOT = Path(__file__).parents[2]
 
@@ -54,7 +55,18 @@ def test_the_first_difference_is_found() -> None:
     assert first_difference(ours, theirs) == 3
 
 
-@pytest.mark.skipif(lacks_tools(), reason="needs the cross compiler and the emulator")
+needs_tools = pytest.mark.skipif(lacks_tools(), reason="needs the cross compiler and the emulator")
+
+
+@needs_tools
+def test_arithmetic_that_differs_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the compiler may fuse what is not written as fused, the bits are others."""
+    (case,) = (one for one in cases() if one.name == "fm_half_sine")
+    monkeypatch.setattr(tools, "CORTEX_M4F", (*tools.CORTEX_M4F, "-ffp-contract=fast"))
+    assert measure(case, tmp_path).first_difference is not None
+
+
+@needs_tools
 def test_the_path_of_the_page_works_as_written(tmp_path: Path) -> None:
     page = (ROOT / "docs/export.md").read_text()
     blocks = re.findall(r"^```sh\n(.*?)^```$", page, re.M | re.S)
