@@ -8,11 +8,12 @@ UV := $(BIN)/uv --quiet
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
 
-.PHONY: help demo test lint bench peers docs lock clean
+.PHONY: help demo test test-firmware lint bench peers docs lock clean
 
 help:
 	@echo "make demo    set up, then reproduce the paper into out/reproduction"
 	@echo "make test    set up, then run every test"
+	@echo "make test-firmware   exported controllers on an emulated Cortex-M4F; says what to install"
 	@echo "make lint    formatting, static checks, layer rules"
 	@echo "make bench   measure speed and memory, into bench/results.json"
 	@echo "make peers   the same loop in other tools, into bench/peers/results.md"
@@ -26,6 +27,9 @@ test: $(VENV)/.built $(VENV)/.development
 	$(CARGO_TEST) --features breakaway-core/serde,breakaway-batch/yardstick
 	cargo check --quiet --locked -p breakaway-core --no-default-features
 	$(BIN)/python -m pytest -n 2
+
+test-firmware: $(VENV)/.built
+	$(BIN)/python -m tests.firmware
 
 lint: $(VENV)/.built $(VENV)/.development
 	cargo fmt --all --check
