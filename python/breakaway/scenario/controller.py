@@ -204,7 +204,7 @@ class TimedImpacts(Model):
     """Share by which a rough slip lowers the ceiling."""
     patience_s: NotNegative = 0.2
     """Time by which a rough slip puts target_s off, in s."""
-    patience_max_s: NotNegative = 2.8
+    patience_max_s: NotNegative = 2.4
     """Most by which target_s is put off, in s."""
     coast_min_s: NotNegative = 1e-3
     """Shortest coast, in s."""
