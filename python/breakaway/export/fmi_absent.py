@@ -88,4 +88,4 @@ def absent(fmi: str) -> list[tuple[str, list[tuple[str, str]], str]]:
 
 
 def _name(declaration: str) -> str:
-    return re.findall(r"\w+", declaration)[-1]
+    return str(re.findall(r"\w+", declaration)[-1])
