@@ -65,7 +65,8 @@ def test_reset_begins_anew(fmi: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("fmi", VERSIONS)
 def test_a_hundred_instances_in_turn_and_in_threads(fmi: str, tmp_path: Path) -> None:
-    exported = Exported(paper(), "loop", fmi, tmp_path)
+    scenario = paper().with_({"disturbance.var": 0.15})
+    exported = Exported(scenario, "loop", fmi, tmp_path)
     units = [exported.instance(f"unit{n}").start(run=n) for n in range(100)]
     for k in range(30):
         for unit in units:

@@ -10,7 +10,7 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
-from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 
 import breakaway as bk
@@ -82,21 +82,18 @@ class Unit:
 
     def _instantiate(self) -> None:
         if self.exported.fmi == "2":
-            from fmpy import fmi2
 
             def log(_env: Any, _name: bytes, _status: int, _category: bytes, text: bytes) -> None:
                 self.told.append(text.decode())
 
-            self.callbacks = fmi2.fmi2CallbackFunctions()
-            self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
+            self.callbacks = fmi2CallbackFunctions()
+            self.callbacks.logger = fmi2CallbackLoggerTYPE(log)
             self.slave.instantiate(callbacks=self.callbacks)
         else:
-            from fmpy import fmi3
 
             def say(_env: Any, _status: int, _category: bytes, text: bytes) -> None:
                 self.told.append(text.decode())
 
-            self.logger = fmi3.fmi3LogMessageCallback(say)
             self.slave.instantiate(logMessage=say)
 
     def start(self, **values: float) -> Unit:
@@ -129,11 +126,7 @@ class Unit:
         return get([self.references[name]])[0]
 
     def step(self, time: float, size: float) -> None:
-        self.slave.doStep(currentCommunicationPoint=time, **{self._size: size})
-
-    @property
-    def _size(self) -> str:
-        return "communicationStepSize"
+        self.slave.doStep(currentCommunicationPoint=time, communicationStepSize=size)
 
     def outputs(self) -> list[float]:
         references = [self.references[name] for name in self.exported.outputs]

@@ -182,7 +182,7 @@ def _context(recording: Recording, fmi: Fmi) -> dict[str, Any]:
         "outputs": recording.outputs,
     }
     labelled = {
-        name: [{"label": _label(one.path), "name": one.name} for one in group]
+        name: [{"label": _label(one, prefix, name), "name": one.name} for one in group]
         for name, group in groups.items()
     }
     names = [one.name for one in recording.parameters]
@@ -202,7 +202,7 @@ def _context(recording: Recording, fmi: Fmi) -> dict[str, Any]:
         "period_s": repr(scenario.timing.control_period_s),
         "stop_s": repr(scenario.timing.duration_s),
         "units": {unit: BASE_UNITS[unit] for unit in sorted(units)},
-        "variables": _variables(groups, fmi),
+        "variables": _variables(groups, prefix, fmi),
         "sources": ["fmu.c", f"{prefix}.c"],
         "absent": absent(fmi),
     }
@@ -219,16 +219,28 @@ def _seeds(recording: Recording) -> list[Variable]:
     ]
 
 
-def _label(path: str) -> str:
-    """A path as a structured name: numbers are indices."""
-    return re.sub(r"\.(\d+)(?=\.|$)", r"[\1]", path)
+_COMMANDS = ("force_n", "feed_m_per_s", "stack_share")
 
 
-def _variables(groups: dict[str, list[Variable]], fmi: Fmi) -> list[_Told]:
+def _label(one: Variable, what: What, group: str) -> str:
+    """The name of a variable in the unit.
+
+    Parameters are called by their path, with numbers as indices. What goes from a controller to
+    a plant and back has one name on both sides, and as an output of a loop.
+    """
+    if (what, group) == ("controller", "inputs"):
+        return f"measured_{one.name}"
+    if (what, group) in (("controller", "outputs"), ("plant", "inputs")):
+        return f"command_{one.name}" if one.name in _COMMANDS else one.name
+    return re.sub(r"\.(\d+)(?=\.|$)", r"[\1]", one.path)
+
+
+def _variables(groups: dict[str, list[Variable]], what: What, fmi: Fmi) -> list[_Told]:
     told: list[_Told] = []
     for group, variables in groups.items():
         for one in variables:
-            told.append(_told(one, group, 1 + len(told), fmi))
+            name = _label(one, what, group)
+            told.append(_told(one, name, group, 1 + len(told), fmi))
     return told
 
 
@@ -241,7 +253,7 @@ _ROLES = {
 """Group -> causality, variability and initial."""
 
 
-def _told(one: Variable, group: str, reference: int, fmi: Fmi) -> _Told:
+def _told(one: Variable, name: str, group: str, reference: int, fmi: Fmi) -> _Told:
     causality, variability, initial = _ROLES[group]
     whole = group == "seeds"
     bounds = one.range
@@ -252,7 +264,7 @@ def _told(one: Variable, group: str, reference: int, fmi: Fmi) -> _Told:
         minimum, maximum = "0", str(_LARGEST_INTEGER if fmi == "2" else 2**64 - 1)
     start = str(int(one.value)) if whole else _number(one.value)
     return _Told(
-        name=_label(one.path),
+        name=name,
         reference=reference,
         causality=causality,
         variability="fixed" if one.name == _PERIOD else variability,
