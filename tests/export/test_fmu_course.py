@@ -8,6 +8,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from tests.export.kinds import CONTROLLERS
 from tests.export.units import VERSIONS, Exported, impacts, paper
 
 import breakaway as bk
@@ -82,6 +83,33 @@ def test_a_plant_shows_its_rest_after_initialization(fmi: str, tmp_path: Path) -
     unit = Exported(impacts(), "plant", fmi, tmp_path).instance().start()
     assert unit["position_m"] == 0.0
     assert np.isfinite(unit.outputs()).all()
+    unit.close()
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_a_watch_sees_what_is_no_number(fmi: str, tmp_path: Path) -> None:
+    scenario = CONTROLLERS["two_step_impacts"]
+    period = scenario.timing.control_period_s
+    unit = Exported(scenario, "controller", fmi, tmp_path).instance().start()
+    unit.run(0, 3, period)
+    assert unit["stop_reason"] == 0.0
+    unit["measured_position_m"] = np.nan
+    unit.step(3 * period, period)
+    assert unit["stop_reason"] == 1.0
+    assert "the watch has seen it" in unit.told[-1]
+    unit["measured_position_m"] = 0.0
+    unit.step(4 * period, period)
+    assert (unit["stop_reason"], unit["command_force_n"]) == (1.0, 0.0)
+    unit.close()
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_a_course_that_diverges_ends_in_an_error(fmi: str, tmp_path: Path) -> None:
+    unit = Exported(paper(), "loop", fmi, tmp_path).instance()
+    unit.start(**{"controller.gains.kd_n_s_per_m": -1e300})
+    with pytest.raises(Exception, match="status 3"):
+        unit.run(0, 100, 1e-5)
+    assert "diverged" in unit.told[-1]
     unit.close()
 
 
