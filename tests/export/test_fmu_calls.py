@@ -143,7 +143,8 @@ static void logger(void *e, fmi3Status s, fmi3String c, fmi3String text)
     strncpy(last, text, sizeof last - 1u);
 }
 
-static fmi3Instance made(const char *name, const char *token, bool events, fmi3LogMessageCallback say)
+static fmi3Instance
+made(const char *name, const char *token, bool events, fmi3LogMessageCallback say)
 {
     return fmi3InstantiateCoSimulation(
         name, token, NULL, false, false, events, false, NULL, 0, NULL, say, NULL);
