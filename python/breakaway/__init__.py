@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from breakaway import design
     from breakaway.batch import Batch, draw_columns, grid_columns, simulate_many
     from breakaway.comparison import Comparison, compare_methods
-    from breakaway.export import ExportedC, export_c
+    from breakaway.export import ExportedC, ExportedFmu, export_c, export_fmu
     from breakaway.identification import (
         BreakawayEvent,
         BreakawayReport,
@@ -140,7 +140,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "breakaway.batch": ("Batch", "draw_columns", "grid_columns", "simulate_many"),
     "breakaway.comparison": ("Comparison", "compare_methods"),
-    "breakaway.export": ("ExportedC", "export_c"),
+    "breakaway.export": ("ExportedC", "ExportedFmu", "export_c", "export_fmu"),
     "breakaway.identification": (
         "BreakawayEvent",
         "BreakawayReport",
@@ -281,6 +281,7 @@ __all__ = [
     "ElastoPlastic",
     "Estimate",
     "ExportedC",
+    "ExportedFmu",
     "FeedAxis",
     "FeedSettings",
     "Finding",
@@ -368,6 +369,7 @@ __all__ = [
     "draw_columns",
     "draw_parts",
     "export_c",
+    "export_fmu",
     "find_breakaway_events",
     "fit_population",
     "grid_columns",

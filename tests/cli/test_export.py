@@ -1,4 +1,4 @@
-"""`breakaway export c` writes C, and says what it wrote."""
+"""`breakaway export` writes C and FMUs, and says what it wrote."""
 
 import json
 from collections.abc import Callable
@@ -52,3 +52,25 @@ def test_a_folder_that_can_not_be_written_is_named(call: Call, tmp_path: Path) -
     done = call("export", "c", "paper_as_computed", "--out", tmp_path / "file")
     assert done.exit_code == 3
     assert "is a file, not a folder" in done.stderr
+
+
+@pytest.mark.parametrize("fmi", ["2", "3"])
+def test_writes_a_unit(call: Call, tmp_path: Path, fmi: str) -> None:
+    out = tmp_path / "rig.fmu"
+    done = call("export", "fmu", "paper_as_computed", "--fmi", fmi, "--out", out, "--json")
+    assert done.exit_code == 0
+    told = json.loads(done.stdout)
+    assert (told["what"], told["fmi"], told["file"]) == ("controller", fmi, str(out))
+    assert (told["binary"] is None) == (told["note"] != "")
+    done = call("export", "fmu", "paper_as_computed", "--fmi", fmi, "--out", out)
+    assert "rig.fmu" in done.stdout
+
+
+def test_a_unit_that_can_not_be_written_is_named(call: Call, tmp_path: Path) -> None:
+    done = call("export", "fmu", "paper_as_computed", "--fmi", "1", "--out", tmp_path / "rig.fmu")
+    assert done.exit_code == 2
+    assert "'2', '3'" in done.stderr
+    done = call("export", "fmu", "paper_as_computed", "--out", tmp_path / "missing" / "rig.fmu")
+    assert done.exit_code == 3
+    assert "give a folder that you can write to" in done.stderr.replace("\n", " ")
+    assert not list(tmp_path.iterdir())

@@ -32,6 +32,13 @@ class Real(StrEnum):
     FLOAT = "float"
 
 
+class Fmi(StrEnum):
+    """The version of the standard."""
+
+    TWO = "2"
+    THREE = "3"
+
+
 @export.command("c")
 def export_c(
     scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
@@ -64,3 +71,32 @@ def export_c(
         f"Build and test it: cmake -S {out} -B {out}/build && cmake --build {out}/build && "
         f"ctest --test-dir {out}/build"
     )
+
+
+@export.command("fmu")
+def export_fmu(
+    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    out: Annotated[Path, typer.Option(help="The file, such as rig.fmu.", metavar="FILE.fmu")],
+    what: Annotated[
+        What, typer.Option(help="The controller with its reference, the plant, or both closed.")
+    ] = What.CONTROLLER,
+    fmi: Annotated[Fmi, typer.Option(help="Version of the FMI standard.")] = Fmi.THREE,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+) -> None:
+    """Write a unit for co-simulation (FMU): sources, and the library for this host.
+
+    It computes the same bits as the simulation. A communication step is a whole
+    number of control periods. The library needs a C compiler here: cc, gcc or
+    clang on PATH, or what CC names; without one, the unit holds sources only.
+    """
+    from breakaway.export import export_fmu as write
+    from breakaway.scenario import load_scenario
+
+    asked = load_scenario(scenario)
+    with busy("recording the step ..."):
+        written = write(asked, what=what.value, fmi=fmi.value, out=out)
+    if json:
+        told = {"what": written.what, "fmi": written.fmi, "file": str(written.path)}
+        say_json({**told, "binary": written.binary, "note": written.note})
+        return
+    say(f"wrote {written.path}: FMI {written.fmi}, {written.binary or written.note}")

@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from breakaway.export.c_files import ExportedC, export_c
+from breakaway.export.fmu import ExportedFmu, export_fmu
 
-__all__ = ["ExportedC", "export_c"]
+__all__ = ["ExportedC", "ExportedFmu", "export_c", "export_fmu"]

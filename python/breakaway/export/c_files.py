@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from json import dumps
 from pathlib import Path
@@ -86,8 +87,8 @@ def export_c(
     ['CMakeLists.txt', 'README.md', 'controller.c', 'controller.h']
 
     """
-    _check_choice("what", what, TITLES)
-    _check_choice("real", real, ("double", "float"))
+    check_choice("what", what, TITLES)
+    check_choice("real", real, ("double", "float"))
     recording = record(resolve(scenario), what, real)
     folder = Path(out)
     texts = c_texts(recording)
@@ -97,7 +98,8 @@ def export_c(
     return ExportedC(what, real, tuple(folder / name for name in sorted(texts)))
 
 
-def _check_choice(name: str, value: str, known: Any) -> None:  # noqa: ANN401 - a collection of names
+def check_choice(name: str, value: str, known: Collection[str]) -> None:
+    """Refuse a choice that is not known."""
     if value not in known:
         raise ScenarioError(f"{name}: {value!r} is not one of {', '.join(map(repr, known))}")
 

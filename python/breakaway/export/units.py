@@ -35,3 +35,23 @@ def unit_of(name: str) -> str:
     last = parts[-1]
     endings = (unit for ending, unit in _UNITS.items() if f"_{last}".endswith(f"_{ending}"))
     return next(endings, "1")
+
+
+BASE_UNITS: dict[str, dict[str, int]] = {
+    "N/(m s)": {"kg": 1, "s": -3},
+    "N s/m": {"kg": 1, "s": -1},
+    "N/m": {"kg": 1, "s": -2},
+    "N/s": {"kg": 1, "m": 1, "s": -3},
+    "m/s2": {"m": 1, "s": -2},
+    "m/s": {"m": 1, "s": -1},
+    "1/s": {"s": -1},
+    "Hz": {"s": -1},
+    "kg": {"kg": 1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "m": {"m": 1},
+    "s": {"s": 1},
+    "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
+    "A": {"A": 1},
+    "F": {"kg": -1, "m": -2, "s": 4, "A": 2},
+}
+"""Unit -> the exponents of its SI base units."""
