@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -67,9 +68,10 @@ def export_c(
         return
     for path in written.files:
         say(f"wrote {path}")
+    source, build = shlex.quote(str(out)), shlex.quote(str(out / "build"))
     say(
-        f"Build and test it: cmake -S {out} -B {out}/build && cmake --build {out}/build && "
-        f"ctest --test-dir {out}/build"
+        f"Build and test it: cmake -S {source} -B {build} && cmake --build {build} && "
+        f"ctest --test-dir {build}"
     )
 
 

@@ -80,7 +80,7 @@ def export_fmu(
     Parameters
     ----------
     scenario : Scenario
-        What is exported. Its numbers are parameters of the unit, under their paths.
+        What is exported. Its numbers, once resolved, are parameters of the unit, under their paths.
     what : {"controller", "plant", "loop"}
         Reference, controller and watch; or actuator, joint, part and sensors; or both.
     fmi : {"2", "3"}

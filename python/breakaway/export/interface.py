@@ -31,6 +31,17 @@ class Range:
     infinite: bool = False
     """Whether it may be infinite: a limit that is left out."""
 
+    @property
+    def told(self) -> str:
+        """The range in words."""
+        if self.minimum is None and self.maximum is None:
+            told = "any"
+        else:
+            low = "" if self.minimum is None else f"{'>' if self.above else '>='} {self.minimum:g}"
+            high = "" if self.maximum is None else f"{'<' if self.below else '<='} {self.maximum:g}"
+            told = ", ".join(part for part in (low, high) if part)
+        return f"{told}, or infinite for none" if self.infinite else told
+
     def holds(self, value: float) -> bool:
         """Whether a number is allowed."""
         low = -inf if self.minimum is None else self.minimum
