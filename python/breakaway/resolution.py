@@ -169,6 +169,19 @@ def _name_as_the_core(values: dict[str, Any]) -> None:
         watch["frozen_max_s"] = float("inf")
 
 
+def core_joint(joint: AnyJoint) -> dict[str, Any]:
+    """Give a resolved joint as the core takes it.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> core_joint(bk.resolve(bk.load_scenario("paper_as_computed")).joint)["law"]
+    'lugre'
+
+    """
+    return _core_joint(joint, joint.model_dump())
+
+
 def _core_joint(joint: AnyJoint, values: dict[str, Any]) -> dict[str, Any]:
     """Nest what the core nests: the laws that build on LuGre hold its numbers in a table."""
     _leave_out_zero(values, "viscous_n_s_per_m")

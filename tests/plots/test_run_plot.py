@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 import breakaway as bk
 from breakaway.plots.run import BINS, plot_run
 from breakaway.plots.style import house_style, save_figure, scaled
+from breakaway.scenario.population import LAWS
 
 BASE = bk.load_scenario("paper_as_computed")
 
@@ -105,3 +106,10 @@ def test_axes_take_readable_units(
     factor, name = scaled(values, unit)
     assert factor == pytest.approx(expected[0])
     assert name == expected[1]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_every_law_is_drawn(law: str) -> None:
+    parts = bk.load_population("seized_parts").model_copy(update={"duration_s": 0.01})
+    trial = bk.run_trial(parts, bk.load_method("steady_feed"), law=law, runs=range(1), seed=1)
+    assert len(trial.replay(0, trace_every=20).plot().axes) >= 2

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from breakaway import _core
 from breakaway.comparison.table import Trials, median_row, worst_row
 from breakaway.plots.comparison import Course
+from breakaway.resolution import core_joint
 from breakaway.run import Run
 from breakaway.trials import Trial
 
@@ -127,7 +128,7 @@ def _largest_stretch(excess: Array) -> tuple[float, int, int]:
 
 def _columns(run: Run, rows: Rows) -> dict[str, Array]:
     """Give time, position, force, and the force that would break the joint loose there."""
-    joint = run.scenario.joint.model_dump()
+    joint = core_joint(run.scenario.joint)
     x = run.trace["position_m"][rows]
     return {
         "t_s": run.trace["t_s"][rows],

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from breakaway import _core
 from breakaway.errors import ScenarioError
 from breakaway.plots.style import COLORS, house_figure, house_style, scaled
+from breakaway.resolution import core_joint
 from breakaway.run import Outcome, Run
 
 Array = NDArray[np.float64]
@@ -102,7 +103,7 @@ def _draw_error(axes: Axes, columns: Mapping[str, Array], per_s: float) -> None:
 def _draw_forces(axes: Axes, run: Run, columns: Mapping[str, Array], per_s: float) -> None:
     applied, joint = columns["applied_force_n"], columns["joint_force_n"]
     t, x = _thinned(columns["t_s"], columns["position_m"])
-    law = run.scenario.joint.model_dump()
+    law = core_joint(run.scenario.joint)
     loose = np.array([_core.breakaway_force(law, float(at)) for at in x])  # equation (5)
     factor, unit = scaled([*_range(applied), *_range(joint), *_range(loose)], "N")
     for label, values, color in (("applied", applied, "ours"), ("joint", joint, "alternative")):
