@@ -16,7 +16,7 @@ use breakaway_core::test_models::{paper_as_computed, paper_limits};
 const SAMPLES: u64 = 50_000;
 const SIMULATED_S: f64 = 0.5;
 /// Turns that each case takes.
-const TURNS: usize = 30;
+const TURNS: usize = 100;
 /// Packs of lanes for each thread.
 const PACKS: usize = 2;
 
