@@ -78,16 +78,16 @@ fn bits<const N: usize>(seed: u64, run: &[u64; N], stream: Stream, index: &[u32;
     bits
 }
 
-/// Noise of the sensors of `N` runs at a sample: of the position, and of the force.
+/// Noise of the sensors of `N` runs, each at a sample of its own: of the position, and of the force.
 ///
 /// Each is the sum of eight random bytes, shifted and scaled to mean 0 and variance 1: nearly normal,
 /// |w| < 4.88, excess kurtosis -0.15, in steps of 0.005. One call of the generator gives both.
 #[must_use]
 #[inline(always)]
-pub fn noise<const N: usize>(seed: u64, run: &[u64; N], sample: u64) -> [[f64; N]; 2] {
+pub fn noise<const N: usize>(seed: u64, run: &[u64; N], sample: &[u64; N]) -> [[f64; N]; 2] {
     let mut counter = [[u64::from(Stream::Noise.word()); N]; 4];
     for i in 0..N {
-        counter[0][i] = sample & LOW;
+        counter[0][i] = sample[i] & LOW;
         counter[2][i] = run[i] & LOW;
         counter[3][i] = run[i] >> 32;
     }
@@ -139,6 +139,11 @@ pub fn fraction(seed: u64, run: u64, stream: Stream) -> f64 {
     open(bits(seed, &[run], stream, &[0])[0])
 }
 
+/// When the first draw is due in a run that begins with `sample`: never, if it has no disturbance.
+fn first_redraw(disturbance: &Disturbance<f64>, sample: u64) -> u64 {
+    if disturbance.var == 0.0 { u64::MAX } else { sample }
+}
+
 /// On [-1, 1).
 #[inline(always)]
 fn centered(bits: u64) -> f64 {
@@ -174,6 +179,7 @@ pub struct HeldDraws<const N: usize> {
     hold_s: [f64; N],
     samples_per_draw: [f64; N],
     draws: [u32; N],
+    begun: [u64; N],
     next_redraw: [u64; N],
     low_passed: [f64; N],
     held: [f64; N],
@@ -197,10 +203,27 @@ impl<const N: usize> HeldDraws<N> {
             hold_s: all.map(|one| one.hold_s),
             samples_per_draw: std::array::from_fn(|i| all[i].hold_s / period_s(i)),
             draws: [0; N],
-            next_redraw: all.map(|one| if one.var == 0.0 { u64::MAX } else { 0 }),
+            begun: [0; N],
+            next_redraw: all.map(|one| first_redraw(&one, 0)),
             low_passed: [0.0; N],
             held: [0.0; N],
         }
+    }
+
+    /// Begins place `i` anew with another run, whose sample 0 is `sample` here.
+    pub(crate) fn begin(
+        &mut self,
+        i: usize,
+        run: u64,
+        disturbance: &Disturbance<f64>,
+        period_s: f64,
+        sample: u64,
+    ) {
+        (self.run[i], self.law[i], self.hold_s[i]) = (run, disturbance.law, disturbance.hold_s);
+        self.samples_per_draw[i] = disturbance.hold_s / period_s;
+        (self.draws[i], self.begun[i]) = (0, sample);
+        self.next_redraw[i] = first_redraw(disturbance, sample);
+        (self.low_passed[i], self.held[i]) = (0.0, 0.0);
     }
 
     /// Draws for sample number `sample` where one is due; gives the sample of the next draw.
@@ -221,7 +244,7 @@ impl<const N: usize> HeldDraws<N> {
                 self.held[i] = self.draw(i, bits[i]);
                 self.draws[i] += 1;
                 let due = f64::from(self.draws[i]) * self.samples_per_draw[i] - 1e-6;
-                self.next_redraw[i] = due.ceil() as u64;
+                self.next_redraw[i] = self.begun[i].saturating_add(due.ceil() as u64);
             }
             next = next.min(self.next_redraw[i]);
         }

@@ -10,6 +10,7 @@ pub mod figures;
 pub mod imposed;
 pub mod instructions;
 pub mod lanes;
+mod lockstep;
 pub mod normal;
 pub mod rig;
 pub mod run;

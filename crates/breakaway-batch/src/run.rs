@@ -277,7 +277,7 @@ impl Job {
         if extraction.sensors.is_none() {
             return Draws { disturbance, ..Draws::none() };
         }
-        let [[position], [force]] = noise(self.seed, &[self.run], sample);
+        let [[position], [force]] = noise(self.seed, &[self.run], &[sample]);
         Draws { disturbance, noise: Noise { position, force } }
     }
 

@@ -7,7 +7,7 @@ const SAMPLES: u64 = 1000;
 
 /// Draws of a sensor of a run, one for each sample.
 fn course(run: u64, sensor: usize) -> Vec<f64> {
-    (0..SAMPLES).map(|sample| noise(3, &[run], sample)[sensor][0]).collect()
+    (0..SAMPLES).map(|sample| noise(3, &[run], &[sample])[sensor][0]).collect()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -39,7 +39,7 @@ fn it_is_independent_of_time_run_sensor_and_seed() {
     for run in 0..100 {
         let (position, force) = (course(run, 0), course(run, 1));
         let other = course(run + 1, 0);
-        let reseeded: Vec<f64> = (0..SAMPLES).map(|n| noise(4, &[run], n)[0][0]).collect();
+        let reseeded: Vec<f64> = (0..SAMPLES).map(|n| noise(4, &[run], &[n])[0][0]).collect();
         assert!(far(&position[1..], &position) < 4.5, "{run}: one sample later");
         assert!(far(&position, &force) < 4.5, "{run}: the other sensor");
         assert!(far(&position, &other) < 4.5, "{run}: the other run");
@@ -51,9 +51,9 @@ fn it_is_independent_of_time_run_sensor_and_seed() {
 fn it_is_a_function_of_seed_run_and_sample() {
     let runs: [u64; 8] = std::array::from_fn(|lane| (1 << 33) + 7 * lane as u64);
     for sample in [0, 1, 1 << 31] {
-        let together = noise(u64::MAX, &runs, sample);
+        let together = noise(u64::MAX, &runs, &[sample; 8]);
         for (lane, &run) in runs.iter().enumerate() {
-            let alone = noise(u64::MAX, &[run], sample);
+            let alone = noise(u64::MAX, &[run], &[sample]);
             assert_eq!([together[0][lane], together[1][lane]], [alone[0][0], alone[1][0]]);
         }
     }

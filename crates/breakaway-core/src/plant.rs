@@ -223,7 +223,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     /// Multiplying through by g leaves one division; collecting powers of g leaves the shortest
     /// chain after the exponential in g, which is what a single run waits for, and coefficients
     /// that change at a redraw only. R_m = (w − v_m) / q is the joint force of the first line. A
-    /// part whose middle is beyond the guide moves by w alone; its R_m is zero, and its bristle relaxes.
+    /// part whose middle is beyond the guide moves by w alone; its R_m and its bristle are zero.
     /// Derivation and error constants: `docs/derivations/linearly_implicit_midpoint.md`.
     #[inline(always)]
     fn step_bristle(
@@ -275,7 +275,8 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
             None => kept,
         };
         let per_force = (per_force * R::constant(2.0)).named("two_per_force_m_per_n");
-        state.bristle_m = (per_force * per_lost).mul_add(lost, kept).named("bristle_m");
+        let held = (per_force * per_lost).mul_add(lost, kept);
+        state.bristle_m = R::select(engaged, held, R::zero()).named("bristle_m");
         self.carry(state, k, two_v, lost * per_lost, force_n)
     }
 

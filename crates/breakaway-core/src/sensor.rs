@@ -70,8 +70,8 @@ impl<R: Real> Sensor<R> {
             Some(hertz) => {
                 let per_s = R::constant(-2.0 * core::f64::consts::PI) * hertz;
                 let share = (R::one() - (per_s * period_s).exp()).named("bandwidth_share");
-                state.filtered =
-                    share.mul_add(value - state.filtered, state.filtered).named("filtered");
+                let filtered = share.mul_add(value - state.filtered, state.filtered);
+                state.filtered = filtered.ebbed().named("filtered");
                 state.filtered
             }
             None => value,

@@ -86,7 +86,7 @@ impl<R: Scalar> Rig<R> {
     }
 
     fn noise(&self, sample: u64) -> Noise<R> {
-        let [[position], [force]] = noise(self.draws.seed, &[self.draws.run], sample);
+        let [[position], [force]] = noise(self.draws.seed, &[self.draws.run], &[sample]);
         Noise { position: R::constant(position), force: R::constant(force) }
     }
 

@@ -42,7 +42,7 @@ impl<R: Real> ForceActuator<R> {
         let most = (self.force_rate_max_n_per_s * h).named("most_n");
         // Rounding may lead out of the range, by a bit.
         let force_n = self.range().limit(before + wanted.clamp(-most, most));
-        state.force_n = force_n.named("actuator_force_n");
+        state.force_n = force_n.ebbed().named("actuator_force_n");
         let limited = target.lt(command_n) | command_n.lt(target) | most.lt(wanted.abs());
         let mut driven = Driven::rigid(R::constant(0.5) * (before + state.force_n));
         driven.effort.saturated_s = R::select(limited, h, R::zero());

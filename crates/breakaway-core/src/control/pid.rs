@@ -95,10 +95,12 @@ impl<R: Real> PidState<R> {
 }
 
 /// The filtered derivative in parts, d = kept + share · raw, so that a gain can be multiplied in
-/// before the newest velocity is known. Nothing is kept without a filter.
+/// before the newest velocity is known. Nothing is kept without a filter: zero and no `Option`, whose
+/// empty place compilers compute with before they look whether it is empty.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Filtered<R> {
-    kept: Option<R>,
+    is_filtered: bool,
+    kept: R,
     share: R,
     raw: R,
 }
@@ -108,9 +110,10 @@ impl<R: Real> Gains<R> {
     #[inline(always)]
     fn force(&self, error_m: R, filtered: &Filtered<R>, integral_n: R) -> R {
         let kd = self.kd_n_s_per_m;
-        let base = match filtered.kept {
-            Some(kept) => kd.mul_add(kept, integral_n).named("kept_derivative_n"),
-            None => integral_n,
+        let base = if filtered.is_filtered {
+            kd.mul_add(filtered.kept, integral_n).named("kept_derivative_n")
+        } else {
+            integral_n
         };
         let steady = self.kp_n_per_m.mul_add(error_m, base).named("proportional_n");
         (kd * filtered.share).mul_add(filtered.raw, steady)
@@ -178,12 +181,12 @@ impl<R: Real> Pid<R> {
         state.previous_position_m = measured.position_m;
         let Some(filter_s) = self.derivative_filter_s else {
             state.derivative_m_per_s = raw;
-            return Filtered { kept: None, share: R::one(), raw };
+            return Filtered { is_filtered: false, kept: R::zero(), share: R::one(), raw };
         };
         let share = (measured.period_s / (filter_s + measured.period_s)).named("filter_share");
         let kept = ((R::one() - share) * state.derivative_m_per_s).named("kept_m_per_s");
-        state.derivative_m_per_s = share.mul_add(raw, kept).named("derivative_m_per_s");
-        Filtered { kept: Some(kept), share, raw }
+        state.derivative_m_per_s = share.mul_add(raw, kept).ebbed().named("derivative_m_per_s");
+        Filtered { is_filtered: true, kept, share, raw }
     }
 
     /// The force in N for `gains` after [`Pid::sense`]; moves the integral.

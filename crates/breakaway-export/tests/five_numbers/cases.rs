@@ -408,7 +408,7 @@ pub(crate) fn varied(extraction: &Extraction<f64>, lane: u64) -> Extraction<f64>
 
 /// The held draw of a lane at a sample, never zero, and the noise of its sensors.
 pub(crate) fn draw(lane: u64, sample: u32) -> Draws<f64> {
-    let [[position], [force]] = noise(5, &[lane], u64::from(sample));
+    let [[position], [force]] = noise(5, &[lane], &[u64::from(sample)]);
     Draws {
         disturbance: uniform(5, lane, Stream::Disturbance, sample / HOLD),
         noise: Noise { position, force },
