@@ -1,6 +1,6 @@
 //! Many runs of one extraction: in lanes, on threads, each with numbers and draws of its own.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -11,8 +11,9 @@ use breakaway_core::{Extraction, Outcome};
 use crate::figures::Figure;
 use crate::instructions::Instructions;
 use crate::lanes::Wide;
-use crate::lockstep::InLanes;
-use crate::run::{Job, Run};
+use crate::lockstep::{Lockstep, Queue, Work};
+use crate::run::{Job, Run, plain_kinds};
+use crate::trusted::Trusted;
 
 /// Runs that differ in their draws and in some of their numbers.
 #[derive(Clone, Debug)]
@@ -72,12 +73,13 @@ pub fn run_batch<E>(
 ) -> Result<Results, E> {
     let groups = wanted.groups(batch);
     let mut results = Results::of(batch.runs.len(), wanted.figures.len());
-    let (next, going) = (AtomicUsize::new(0), AtomicBool::new(true));
+    let (queue, going) = (Queue::of(0..batch.runs.len()), AtomicBool::new(true));
     thread::scope(|scope| {
         let (sender, done) = mpsc::channel();
         for _ in 0..threads.max(1) {
-            let lanes = InLanes { batch, groups, next: &next, going: &going, done: sender.clone() };
-            scope.spawn(move || instructions.run(lanes));
+            let work = Work { batch, groups, going: &going, done: sender.clone() };
+            let queue = &queue;
+            scope.spawn(move || take_part(&work, queue, instructions));
         }
         drop(sender);
         let kept =
@@ -86,6 +88,19 @@ pub fn run_batch<E>(
         kept
     })?;
     Ok(results)
+}
+
+/// What a thread does of a batch.
+fn take_part(work: &Work, queue: &Queue, instructions: Instructions) {
+    let Job { extraction, limits, .. } = &work.batch.common;
+    if plain_kinds(extraction).is_none() || limits.after_release_s.is_finite() {
+        return instructions.run_large(Lockstep { work, queue });
+    }
+    while let (Some(runs), true) = (queue.take(instructions.lanes()), work.goes_on()) {
+        if !instructions.run(Trusted { work, runs: runs.clone() }) {
+            instructions.run_large(Lockstep { work, queue: &Queue::of(runs) });
+        }
+    }
 }
 
 /// Keeps runs as they are done and tells how many, until all threads have ended or `tell` has had

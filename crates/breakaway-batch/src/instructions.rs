@@ -4,7 +4,7 @@
 use crate::lanes::avx2;
 #[cfg(avx512)]
 use crate::lanes::avx512;
-use crate::lanes::{Lanes, Wide};
+use crate::lanes::{Pair, Wide};
 
 /// Instructions that this processor has. All give the same bits; they differ in speed only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,24 +54,18 @@ impl Instructions {
         }
     }
 
-    /// How many runs go through the step together: as many as hide the latency of its chain.
+    /// How many runs go through the step together where four vectors do.
     #[must_use]
     pub fn lanes(self) -> usize {
-        match self.0 {
-            Kind::Portable => PORTABLE_LANES,
+        4 * match self.0 {
+            Kind::Portable => 1,
             #[cfg(target_arch = "x86_64")]
-            Kind::Avx2 => AVX2_LANES,
+            Kind::Avx2 => avx2::Four::WIDTH,
             #[cfg(avx512)]
-            Kind::Avx512 => AVX512_LANES,
+            Kind::Avx512 => avx512::Eight::WIDTH,
         }
     }
 }
-
-const PORTABLE_LANES: usize = 4;
-#[cfg(target_arch = "x86_64")]
-const AVX2_LANES: usize = 16;
-#[cfg(avx512)]
-const AVX512_LANES: usize = 32;
 
 /// A computation in lanes, compiled for each kind of instructions.
 pub(crate) trait Kernel {
@@ -83,17 +77,32 @@ pub(crate) trait Kernel {
 }
 
 impl Instructions {
-    /// Runs a kernel.
+    /// Runs a kernel on four vectors at once, which hide the latency of its chain.
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            Kind::Portable => kernel.run::<Lanes<f64>, PORTABLE_LANES>(),
+            Kind::Portable => kernel.run::<Pair<Pair<f64>>, 4>(),
             // SAFETY: `Instructions` are made only for a processor that has them.
             #[cfg(target_arch = "x86_64")]
             #[allow(unsafe_code)]
-            Kind::Avx2 => unsafe { with_avx2(kernel) },
+            Kind::Avx2 => unsafe { with_avx2::<_, Pair<Pair<avx2::Four>>, 16>(kernel) },
             #[cfg(avx512)]
             #[allow(unsafe_code)]
-            Kind::Avx512 => unsafe { with_avx512(kernel) },
+            Kind::Avx512 => unsafe { with_avx512::<_, Pair<Pair<avx512::Eight>>, 32>(kernel) },
+        }
+    }
+
+    /// Runs a kernel that handles very many numbers on two vectors at once: with four, they do not
+    /// fit the processor's nearest cache, which takes half as long again.
+    pub(crate) fn run_large<K: Kernel>(self, kernel: K) -> K::Output {
+        match self.0 {
+            Kind::Portable => kernel.run::<Pair<f64>, 2>(),
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            #[allow(unsafe_code)]
+            Kind::Avx2 => unsafe { with_avx2::<_, Pair<avx2::Four>, 8>(kernel) },
+            #[cfg(avx512)]
+            #[allow(unsafe_code)]
+            Kind::Avx512 => unsafe { with_avx512::<_, Pair<avx512::Eight>, 16>(kernel) },
         }
     }
 }
@@ -101,13 +110,13 @@ impl Instructions {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 #[allow(unsafe_code)]
-unsafe fn with_avx2<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Lanes<avx2::Four>, AVX2_LANES>()
+unsafe fn with_avx2<K: Kernel, V: Wide, const N: usize>(kernel: K) -> K::Output {
+    kernel.run::<V, N>()
 }
 
 #[cfg(avx512)]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
 #[allow(unsafe_code)]
-unsafe fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<Lanes<avx512::Eight>, AVX512_LANES>()
+unsafe fn with_avx512<K: Kernel, V: Wide, const N: usize>(kernel: K) -> K::Output {
+    kernel.run::<V, N>()
 }

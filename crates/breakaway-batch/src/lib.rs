@@ -14,6 +14,7 @@ mod lockstep;
 pub mod normal;
 pub mod rig;
 pub mod run;
+mod trusted;
 #[cfg(feature = "yardstick")]
 pub mod yardstick;
 
@@ -22,7 +23,7 @@ pub use draws::HeldDraws;
 pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
 pub use instructions::Instructions;
-pub use lanes::Lanes;
+pub use lanes::Pair;
 pub use rig::{
     Differentiated, Kept, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
 };

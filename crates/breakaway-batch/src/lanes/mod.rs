@@ -1,4 +1,4 @@
-//! Many runs at once: an array of numbers that go through the same step together.
+//! Many runs at once: numbers that go through the same step together.
 //!
 //! A lane may be one number or, where the processor has them, a vector of several. Which one a
 //! batch uses is chosen at run time ([`crate::instructions`]); all give the same bits.
@@ -13,78 +13,55 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use breakaway_core::Real;
 use breakaway_core::real::Block;
 
-/// Four numbers, or vectors of numbers, that go through the same step together.
+/// Two numbers, vectors of numbers or pairs of them, that go through the same step together.
 ///
-/// Every operation is that of the number on each of them, so the bits of a lane equal those of the
-/// scalar run. One vector alone waits for its dependency chain; four hide it. They are written out and not
-/// looped over: compilers unroll such loops one by one, and a step has tens of thousands of them.
+/// Every operation is that of the number on both, so the bits of a lane equal those of the scalar run.
+/// One vector alone waits for its dependency chain; a pair, or a pair of pairs, hides it. They are
+/// written out and not looped over: compilers unroll such loops one by one, and a step has tens of
+/// thousands of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lanes<V>(pub [V; 4]);
+pub struct Pair<V>(pub V, pub V);
 
 /// A condition for each lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LaneMask<M>([M; 4]);
-
-/// An array of what an expression gives for each of the four places.
-macro_rules! on_each {
-    (|$i:ident| $value:expr) => {
-        [
-            {
-                const $i: usize = 0;
-                $value
-            },
-            {
-                const $i: usize = 1;
-                $value
-            },
-            {
-                const $i: usize = 2;
-                $value
-            },
-            {
-                const $i: usize = 3;
-                $value
-            },
-        ]
-    };
-}
+pub struct PairMask<M>(M, M);
 
 macro_rules! binary {
     ($type:ident, $trait:ident, $method:ident) => {
-        impl<V: $trait<Output = V> + Copy> $trait for $type<V> {
+        impl<V: $trait<Output = V>> $trait for $type<V> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(on_each!(|I| self.0[I].$method(other.0[I])))
+                Self(self.0.$method(other.0), self.1.$method(other.1))
             }
         }
     };
 }
 
-binary!(Lanes, Add, add);
-binary!(Lanes, Sub, sub);
-binary!(Lanes, Mul, mul);
-binary!(Lanes, Div, div);
-binary!(LaneMask, BitAnd, bitand);
-binary!(LaneMask, BitOr, bitor);
+binary!(Pair, Add, add);
+binary!(Pair, Sub, sub);
+binary!(Pair, Mul, mul);
+binary!(Pair, Div, div);
+binary!(PairMask, BitAnd, bitand);
+binary!(PairMask, BitOr, bitor);
 
 macro_rules! unary {
     ($type:ident, $trait:ident, $method:ident) => {
-        impl<V: $trait<Output = V> + Copy> $trait for $type<V> {
+        impl<V: $trait<Output = V>> $trait for $type<V> {
             type Output = Self;
             #[inline(always)]
             fn $method(self) -> Self {
-                Self(on_each!(|I| self.0[I].$method()))
+                Self(self.0.$method(), self.1.$method())
             }
         }
     };
 }
 
-unary!(Lanes, Neg, neg);
-unary!(LaneMask, Not, not);
+unary!(Pair, Neg, neg);
+unary!(PairMask, Not, not);
 
-impl<V: Real> Real for Lanes<V> {
-    type Mask = LaneMask<V::Mask>;
+impl<V: Real> Real for Pair<V> {
+    type Mask = PairMask<V::Mask>;
     const ROUND: f64 = V::ROUND;
 
     #[inline(always)]
@@ -93,48 +70,48 @@ impl<V: Real> Real for Lanes<V> {
     }
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self([V::constant(value); 4])
+        Self(V::constant(value), V::constant(value))
     }
     #[inline(always)]
     fn known(holds: bool) -> Self::Mask {
-        LaneMask([V::known(holds); 4])
+        PairMask(V::known(holds), V::known(holds))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Self::Mask {
-        LaneMask(on_each!(|I| self.0[I].lt(other.0[I])))
+        PairMask(self.0.lt(other.0), self.1.lt(other.1))
     }
     #[inline(always)]
     fn le(self, other: Self) -> Self::Mask {
-        LaneMask(on_each!(|I| self.0[I].le(other.0[I])))
+        PairMask(self.0.le(other.0), self.1.le(other.1))
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Self(on_each!(|I| V::select(mask.0[I], yes.0[I], no.0[I])))
+        Self(V::select(mask.0, yes.0, no.0), V::select(mask.1, yes.1, no.1))
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(on_each!(|I| self.0[I].abs()))
+        Self(self.0.abs(), self.1.abs())
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self(on_each!(|I| self.0[I].min(other.0[I])))
+        Self(self.0.min(other.0), self.1.min(other.1))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(on_each!(|I| self.0[I].max(other.0[I])))
+        Self(self.0.max(other.0), self.1.max(other.1))
     }
     #[inline(always)]
     fn max_abs(self, other: Self) -> Self {
-        Self(on_each!(|I| self.0[I].max_abs(other.0[I])))
+        Self(self.0.max_abs(other.0), self.1.max_abs(other.1))
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self(on_each!(|I| self.0[I].mul_add(factor.0[I], addend.0[I])))
+        Self(self.0.mul_add(factor.0, addend.0), self.1.mul_add(factor.1, addend.1))
     }
     #[inline(always)]
     fn exp2_parts(self) -> (Self, Self) {
-        let [a, b, c, d] = on_each!(|I| self.0[I].exp2_parts());
-        (Self([a.0, b.0, c.0, d.0]), Self([a.1, b.1, c.1, d.1]))
+        let (first, second) = (self.0.exp2_parts(), self.1.exp2_parts());
+        (Self(first.0, second.0), Self(first.1, second.1))
     }
 }
 
@@ -161,13 +138,13 @@ impl Wide for f64 {
     }
 }
 
-impl<V: Wide> Wide for Lanes<V> {
-    const WIDTH: usize = 4 * V::WIDTH;
+impl<V: Wide> Wide for Pair<V> {
+    const WIDTH: usize = 2 * V::WIDTH;
     #[inline(always)]
     fn gather(values: &[f64]) -> Self {
-        Self(on_each!(|I| V::gather(&values[I * V::WIDTH..(I + 1) * V::WIDTH])))
+        Self(V::gather(&values[..V::WIDTH]), V::gather(&values[V::WIDTH..Self::WIDTH]))
     }
     fn extract(self, i: usize) -> f64 {
-        self.0[i / V::WIDTH].extract(i % V::WIDTH)
+        if i < V::WIDTH { self.0.extract(i) } else { self.1.extract(i - V::WIDTH) }
     }
 }
