@@ -54,6 +54,8 @@ pub struct Results {
     pub outcomes: Vec<Outcome>,
 }
 
+/// How many finished runs may wait to be kept.
+const DONE_MOST: usize = 256;
 /// How often progress is told, and asked whether to go on.
 const TELL_EVERY: Duration = Duration::from_millis(50);
 
@@ -75,7 +77,7 @@ pub fn run_batch<E>(
     let mut results = Results::of(batch.runs.len(), wanted.figures.len());
     let (queue, going) = (Queue::of(0..batch.runs.len()), AtomicBool::new(true));
     thread::scope(|scope| {
-        let (sender, done) = mpsc::channel();
+        let (sender, done) = mpsc::sync_channel(DONE_MOST);
         for _ in 0..threads.max(1) {
             let work = Work { batch, groups, going: &going, done: sender.clone() };
             let queue = &queue;

@@ -4,7 +4,7 @@
 use crate::lanes::avx2;
 #[cfg(avx512)]
 use crate::lanes::avx512;
-use crate::lanes::{Pair, Wide};
+use crate::lanes::{Four, Two, Wide};
 
 /// Instructions that this processor has. All give the same bits; they differ in speed only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,14 +80,14 @@ impl Instructions {
     /// Runs a kernel on four vectors at once, which hide the latency of its chain.
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            Kind::Portable => kernel.run::<Pair<Pair<f64>>, 4>(),
+            Kind::Portable => kernel.run::<Four<f64>, 4>(),
             // SAFETY: `Instructions` are made only for a processor that has them.
             #[cfg(target_arch = "x86_64")]
             #[allow(unsafe_code)]
-            Kind::Avx2 => unsafe { with_avx2::<_, Pair<Pair<avx2::Four>>, 16>(kernel) },
+            Kind::Avx2 => unsafe { with_avx2::<_, Four<avx2::Four>, 16>(kernel) },
             #[cfg(avx512)]
             #[allow(unsafe_code)]
-            Kind::Avx512 => unsafe { with_avx512::<_, Pair<Pair<avx512::Eight>>, 32>(kernel) },
+            Kind::Avx512 => unsafe { with_avx512::<_, Four<avx512::Eight>, 32>(kernel) },
         }
     }
 
@@ -95,14 +95,14 @@ impl Instructions {
     /// fit the processor's nearest cache, which takes half as long again.
     pub(crate) fn run_large<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            Kind::Portable => kernel.run::<Pair<f64>, 2>(),
+            Kind::Portable => kernel.run::<Two<f64>, 2>(),
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             #[allow(unsafe_code)]
-            Kind::Avx2 => unsafe { with_avx2::<_, Pair<avx2::Four>, 8>(kernel) },
+            Kind::Avx2 => unsafe { with_avx2::<_, Two<avx2::Four>, 8>(kernel) },
             #[cfg(avx512)]
             #[allow(unsafe_code)]
-            Kind::Avx512 => unsafe { with_avx512::<_, Pair<avx512::Eight>, 16>(kernel) },
+            Kind::Avx512 => unsafe { with_avx512::<_, Two<avx512::Eight>, 16>(kernel) },
         }
     }
 }

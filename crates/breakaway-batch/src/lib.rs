@@ -23,7 +23,7 @@ pub use draws::HeldDraws;
 pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
 pub use instructions::Instructions;
-pub use lanes::Pair;
+pub use lanes::Four;
 pub use rig::{
     Differentiated, Kept, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
 };

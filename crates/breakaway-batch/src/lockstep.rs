@@ -6,7 +6,7 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::SyncSender;
 
 use breakaway_core::disturbance::{Disturbance, Factors};
 use breakaway_core::metrics::{Groups, Limits};
@@ -46,7 +46,7 @@ pub(crate) struct Work<'a> {
     pub(crate) groups: Groups,
     pub(crate) going: &'a AtomicBool,
     /// Where finished runs go, each with its number in the batch.
-    pub(crate) done: Sender<(usize, Run)>,
+    pub(crate) done: SyncSender<(usize, Run)>,
 }
 
 impl Work<'_> {

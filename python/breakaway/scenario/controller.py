@@ -152,12 +152,13 @@ class TimedImpacts(Model):
     coasts to rest before the next impact.
 
     Above the force of the first slip an impact first dwells and then is raised: a part that is slow
-    for its mass needs time. A rough slip lowers the ceiling and puts the target off.
+    for its mass needs time. A rough slip lowers the ceiling, puts the target off and makes steps smaller;
+    so does a ceiling that has become low, where little is left to stop a heavy part.
 
     Examples
     --------
     >>> TimedImpacts(travel_m=0.1, target_s=5.0).restart_ratio
-    0.8
+    0.93
 
     """
 
@@ -171,7 +172,7 @@ class TimedImpacts(Model):
     """Force at which the first search begins, in N."""
     search_time_constant_s: Positive = 60e-3
     """Time in which the force grows by e while the joint is searched for, in s."""
-    rise_time_constant_s: Positive = 7e-3
+    rise_time_constant_s: Positive = 30e-3
     """Time in which it grows by e once something has slipped, in s."""
     slowing_m_per_s: NotNegative = 0.004
     """Velocity above which the force grows slower, in m/s."""
@@ -179,11 +180,11 @@ class TimedImpacts(Model):
     """Velocity above which the force does not grow, in m/s."""
     step_min_m: Positive = 30e-6
     """Smallest step, in m."""
-    step_max_m: Positive = 100e-6
+    step_max_m: Positive = 90e-6
     """Largest step, in m."""
     travel_min_m: NotNegative = 6e-6
     """Travel below which nothing counts as a slip, in m."""
-    restart_ratio: Fraction = 0.8
+    restart_ratio: Fraction = 0.93
     """Share of the ceiling at which an impact begins."""
     probe_ratio: NotNegative = 0.025
     """Share by which a fruitless impact raises the ceiling."""
@@ -194,7 +195,7 @@ class TimedImpacts(Model):
     but dwells longer at its ceiling."""
     dwell_step_s: NotNegative = 2e-4
     """What each such impact adds to the dwell, in s."""
-    dwell_max_s: NotNegative = 1e-3
+    dwell_max_s: NotNegative = 4e-4
     """Longest dwell, in s; after it, the ceiling rises. 0 for none."""
     dwell_kept_share: Fraction = 0.9
     """Share of the dwell that stays after a slip that was seen."""
@@ -206,6 +207,16 @@ class TimedImpacts(Model):
     """Time by which a rough slip puts target_s off, in s."""
     patience_max_s: NotNegative = 2.4
     """Most by which target_s is put off, in s."""
+    caution_per_s: NotNegative = 1.0 / 6.0
+    """Share of step_max_m that each second takes by which target_s is put off, in 1/s."""
+    low_force_ratio: NotNegative = 0.3
+    """Ceiling over the force of the first slip below which the largest step falls with it. 0 for
+    never."""
+    low_step_ratio: Fraction = 0.6
+    """Share of step_max_m to which it falls at most."""
+    latest_s: Positive = 8.7
+    """When the part should be out for all that, in s: neither caution nor a low force makes steps
+    smaller than this takes."""
     coast_min_s: NotNegative = 1e-3
     """Shortest coast, in s."""
     settled_m: Positive = 3e-6
@@ -214,7 +225,7 @@ class TimedImpacts(Model):
     """Lead at the start, in s."""
     lead_min_s: NotNegative = 1e-4
     """Smallest lead, in s."""
-    lead_max_s: NotNegative = 1e-2
+    lead_max_s: NotNegative = 4e-3
     """Largest lead, in s."""
     noise_rms_m: NotNegative = 1e-6
     """Deviation of the position sensor's noise, as known, in m."""
@@ -230,6 +241,7 @@ class TimedImpacts(Model):
         for low, high in (
             ("step_min_m", "step_max_m"),
             ("lead_min_s", "lead_max_s"),
+            ("target_s", "latest_s"),
             ("slowing_m_per_s", "holding_m_per_s"),
         ):
             a, b = getattr(self, low), getattr(self, high)

@@ -13,106 +13,123 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use breakaway_core::Real;
 use breakaway_core::real::Block;
 
-/// Two numbers, vectors of numbers or pairs of them, that go through the same step together.
+/// Defines several numbers, or vectors of numbers, that go through the same step together.
 ///
-/// Every operation is that of the number on both, so the bits of a lane equal those of the scalar run.
-/// One vector alone waits for its dependency chain; a pair, or a pair of pairs, hides it. They are
-/// written out and not looped over: compilers unroll such loops one by one, and a step has tens of
-/// thousands of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair<V>(pub V, pub V);
+/// Every operation is that of the number on each of them, so the bits of a lane equal those of the
+/// scalar run. They are written out and not looped over: compilers unroll such loops one by one, and a
+/// step has tens of thousands of them.
+macro_rules! lanes {
+    ($(#[$meta:meta])* $lanes:ident, $mask:ident, $count:literal, [$($i:literal),+]) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct $lanes<V>(pub [V; $count]);
 
-/// A condition for each lane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PairMask<M>(M, M);
+        /// A condition for each lane.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct $mask<M>([M; $count]);
 
-macro_rules! binary {
-    ($type:ident, $trait:ident, $method:ident) => {
-        impl<V: $trait<Output = V>> $trait for $type<V> {
+        lanes!(binary $lanes, [$($i),+], Add add, Sub sub, Mul mul, Div div);
+        lanes!(binary $mask, [$($i),+], BitAnd bitand, BitOr bitor);
+        lanes!(unary $lanes, [$($i),+], Neg neg);
+        lanes!(unary $mask, [$($i),+], Not not);
+
+        impl<V: Real> Real for $lanes<V> {
+            type Mask = $mask<V::Mask>;
+            const ROUND: f64 = V::ROUND;
+
+            #[inline(always)]
+            fn apart<B: Block>(block: B) -> B::Output {
+                V::apart(block)
+            }
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                Self([V::constant(value); $count])
+            }
+            #[inline(always)]
+            fn known(holds: bool) -> Self::Mask {
+                $mask([V::known(holds); $count])
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self::Mask {
+                $mask([$(self.0[$i].lt(other.0[$i])),+])
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Self::Mask {
+                $mask([$(self.0[$i].le(other.0[$i])),+])
+            }
+            #[inline(always)]
+            fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+                Self([$(V::select(mask.0[$i], yes.0[$i], no.0[$i])),+])
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self([$(self.0[$i].abs()),+])
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                Self([$(self.0[$i].min(other.0[$i])),+])
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                Self([$(self.0[$i].max(other.0[$i])),+])
+            }
+            #[inline(always)]
+            fn max_abs(self, other: Self) -> Self {
+                Self([$(self.0[$i].max_abs(other.0[$i])),+])
+            }
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                Self([$(self.0[$i].mul_add(factor.0[$i], addend.0[$i])),+])
+            }
+            #[inline(always)]
+            fn exp2_parts(self) -> (Self, Self) {
+                let parts = [$(self.0[$i].exp2_parts()),+];
+                (Self([$(parts[$i].0),+]), Self([$(parts[$i].1),+]))
+            }
+        }
+
+        impl<V: Wide> Wide for $lanes<V> {
+            const WIDTH: usize = $count * V::WIDTH;
+            #[inline(always)]
+            fn gather(values: &[f64]) -> Self {
+                Self([$(V::gather(&values[$i * V::WIDTH..($i + 1) * V::WIDTH])),+])
+            }
+            fn extract(self, i: usize) -> f64 {
+                self.0[i / V::WIDTH].extract(i % V::WIDTH)
+            }
+        }
+    };
+    (binary $type:ident, $places:tt, $($trait:ident $method:ident),+) => {
+        $( lanes!(one binary $type, $trait $method, $places); )+
+    };
+    (one binary $type:ident, $trait:ident $method:ident, [$($i:literal),+]) => {
+        impl<V: $trait<Output = V> + Copy> $trait for $type<V> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(self.0.$method(other.0), self.1.$method(other.1))
+                Self([$(self.0[$i].$method(other.0[$i])),+])
             }
         }
     };
-}
-
-binary!(Pair, Add, add);
-binary!(Pair, Sub, sub);
-binary!(Pair, Mul, mul);
-binary!(Pair, Div, div);
-binary!(PairMask, BitAnd, bitand);
-binary!(PairMask, BitOr, bitor);
-
-macro_rules! unary {
-    ($type:ident, $trait:ident, $method:ident) => {
-        impl<V: $trait<Output = V>> $trait for $type<V> {
+    (unary $type:ident, [$($i:literal),+], $trait:ident $method:ident) => {
+        impl<V: $trait<Output = V> + Copy> $trait for $type<V> {
             type Output = Self;
             #[inline(always)]
             fn $method(self) -> Self {
-                Self(self.0.$method(), self.1.$method())
+                Self([$(self.0[$i].$method()),+])
             }
         }
     };
 }
 
-unary!(Pair, Neg, neg);
-unary!(PairMask, Not, not);
+lanes! {
+    /// Two, for steps of very many numbers.
+    Two, TwoMask, 2, [0, 1]
+}
 
-impl<V: Real> Real for Pair<V> {
-    type Mask = PairMask<V::Mask>;
-    const ROUND: f64 = V::ROUND;
-
-    #[inline(always)]
-    fn apart<B: Block>(block: B) -> B::Output {
-        V::apart(block)
-    }
-    #[inline(always)]
-    fn constant(value: f64) -> Self {
-        Self(V::constant(value), V::constant(value))
-    }
-    #[inline(always)]
-    fn known(holds: bool) -> Self::Mask {
-        PairMask(V::known(holds), V::known(holds))
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Self::Mask {
-        PairMask(self.0.lt(other.0), self.1.lt(other.1))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Self::Mask {
-        PairMask(self.0.le(other.0), self.1.le(other.1))
-    }
-    #[inline(always)]
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Self(V::select(mask.0, yes.0, no.0), V::select(mask.1, yes.1, no.1))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.abs(), self.1.abs())
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self(self.0.min(other.0), self.1.min(other.1))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self(self.0.max(other.0), self.1.max(other.1))
-    }
-    #[inline(always)]
-    fn max_abs(self, other: Self) -> Self {
-        Self(self.0.max_abs(other.0), self.1.max_abs(other.1))
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self(self.0.mul_add(factor.0, addend.0), self.1.mul_add(factor.1, addend.1))
-    }
-    #[inline(always)]
-    fn exp2_parts(self) -> (Self, Self) {
-        let (first, second) = (self.0.exp2_parts(), self.1.exp2_parts());
-        (Self(first.0, second.0), Self(first.1, second.1))
-    }
+lanes! {
+    /// Four, which hide the latency of a dependency chain: one vector alone waits for it.
+    Four, FourMask, 4, [0, 1, 2, 3]
 }
 
 /// A number that holds one or more `f64`, side by side.
@@ -135,16 +152,5 @@ impl Wide for f64 {
     }
     fn extract(self, _: usize) -> f64 {
         self
-    }
-}
-
-impl<V: Wide> Wide for Pair<V> {
-    const WIDTH: usize = 2 * V::WIDTH;
-    #[inline(always)]
-    fn gather(values: &[f64]) -> Self {
-        Self(V::gather(&values[..V::WIDTH]), V::gather(&values[V::WIDTH..Self::WIDTH]))
-    }
-    fn extract(self, i: usize) -> f64 {
-        if i < V::WIDTH { self.0.extract(i) } else { self.1.extract(i - V::WIDTH) }
     }
 }

@@ -40,7 +40,9 @@ parameters! {
     /// needs time and not more force, and one whose friction varies slips when that is low.
     ///
     /// After a rough slip, C is lowered and t_end put off: smaller forces, which are enough only
-    /// while friction is low, let go of less.
+    /// while friction is low, let go of less. Each second that t_end is put off also takes a share from
+    /// the largest Δ. So does a ceiling that is low against F_b, towards the end of the guide: there
+    /// little is left to stop a heavy part. Neither makes Δ smaller than being out at `latest_s` takes.
     ///
     /// v̂ is the largest slope of least squares over 3, 5 and 8 positions, each less `noise_margin` of
     /// its deviation from noise; where it slows the rise and times the cut, only once x has left x₀
@@ -91,6 +93,14 @@ parameters! {
         pub patience_s,
         /// Most by which t_end is put off, s.
         pub patience_max_s,
+        /// Share of the largest Δ that each second takes by which t_end is put off, 1/s.
+        pub caution_per_s,
+        /// C/F_b below which the largest Δ falls with it.
+        pub low_force_ratio,
+        /// Share of the largest Δ to which it falls at most.
+        pub low_step_ratio,
+        /// When it should be out for all that, s.
+        pub latest_s,
         /// t_c in s.
         pub coast_min_s,
         /// d in m.
@@ -357,7 +367,7 @@ impl<R: Real> TimedImpacts<R> {
     /// The cycle after this one, from where the part rests.
     #[inline(always)]
     fn next_cycle(&self, n: &ImpactNumbers<R>) -> ImpactNumbers<R> {
-        R::section("impacts, next cycle: Delta = what is left / time left * cycle + recoil");
+        R::section("impacts, next cycle: recoil, duration, delay of the end");
         let (zero, share) = (R::zero(), R::constant(NEW_SHARE));
         let first = n.ceiling_n.le(zero);
         let travel = (n.furthest_m - n.start_m).named("travel_m");
@@ -368,28 +378,48 @@ impl<R: Real> TimedImpacts<R> {
         let rough = self.rough_slip_m.lt(travel);
         let later = (n.put_off_s + self.patience_s).min(self.patience_max_s);
         let put_off = R::select(rough, later, n.put_off_s).named("put_off_s");
-        let left_s = (self.target_s + put_off - n.elapsed_s).max(cycle).named("left_s");
-        let needed = ((self.travel_m - n.mean_m) / left_s * cycle + recoil).named("needed_m");
         let (ceiling, dwell) = self.next_ceiling(n, travel, rough);
-        ImpactNumbers {
+        let next = ImpactNumbers {
             coasting: zero,
             force_n: self.restart_ratio * ceiling,
             peak_n: zero,
             ceiling_n: ceiling,
-            first_slip_n: R::select(first, n.peak_n, n.first_slip_n),
+            first_slip_n: R::select(first, n.peak_n, n.first_slip_n).named("first_slip_n"),
             dwell_s: dwell,
             dwelt_s: zero,
             put_off_s: put_off,
             start_m: n.mean_m,
             furthest_m: n.mean_m,
             lead_s: self.next_lead(n, travel),
-            step_m: needed.clamp(self.step_min_m, self.step_max_m),
             recoil_m: recoil,
             cycle_s: cycle,
             in_cycle_s: zero,
             coasted_s: zero,
             ..*n
-        }
+        };
+        ImpactNumbers { step_m: self.next_step(&next), ..next }
+    }
+
+    /// Δ in m, in a cycle whose other numbers are known.
+    #[inline(always)]
+    fn next_step(&self, n: &ImpactNumbers<R>) -> R {
+        R::section("impacts, next step: Delta = what is left / time left * cycle + recoil");
+        let one = R::one();
+        let calm = (-self.caution_per_s).mul_add(n.put_off_s, one).named("calm_share");
+        let force = n.ceiling_n / (self.low_force_ratio * n.first_slip_n);
+        let low = force.clamp(self.low_step_ratio, one).named("low_share");
+        let most =
+            (self.step_max_m * calm * low).max(self.needed(n, self.latest_s)).min(self.step_max_m);
+        let most = most.max(self.step_min_m).named("largest_step_m");
+        self.needed(n, self.target_s + n.put_off_s).clamp(self.step_min_m, most)
+    }
+
+    /// What has to be traveled in each cycle to be out at a time, with the recoil, m.
+    #[inline(always)]
+    fn needed(&self, n: &ImpactNumbers<R>, end_s: R) -> R {
+        let left_s = (end_s - n.elapsed_s).max(n.cycle_s).named("left_s");
+        let left_m = (self.travel_m - n.mean_m).named("left_m");
+        (left_m / left_s * n.cycle_s + n.recoil_m).named("needed_m")
     }
 
     /// C in N and the dwell at it in s, after an impact of some travel.

@@ -27,7 +27,7 @@ fn job(case: &cases::Case) -> Job {
 }
 
 /// Every number of a job, differently for each run.
-fn columns(job: &Job) -> Vec<(usize, Vec<f64>)> {
+fn columns(job: &Job, runs: u64) -> Vec<(usize, Vec<f64>)> {
     let move_by =
         |place: usize, run: u64| 0.1 * uniform(11, run, Stream::Disturbance, place as u32);
     let period = period_place(job);
@@ -35,7 +35,7 @@ fn columns(job: &Job) -> Vec<(usize, Vec<f64>)> {
     numbers
         .filter(|&(place, number)| place != period && number.is_finite())
         .map(|(place, number)| {
-            (place, (0..RUNS).map(|run| number * (1.0 + move_by(place, run))).collect())
+            (place, (0..runs).map(|run| number * (1.0 + move_by(place, run))).collect())
         })
         .collect()
 }
@@ -82,7 +82,7 @@ fn every_kind_on_every_instruction_set() {
         } else if i % 3 == 2 {
             job.extraction.disturbance.law = DrawLaw::BandLimited { bandwidth_hz: 2e3 };
         }
-        let columns = columns(&job);
+        let columns = columns(&job, RUNS);
         let varied = columns.iter().map(|(place, values)| Varied { place: *place, values });
         let batch = Batch { common: job, runs: &runs, varied: varied.collect() };
         for (j, with) in kinds.iter().enumerate() {
@@ -92,6 +92,30 @@ fn every_kind_on_every_instruction_set() {
             }
         }
     }
+}
+
+/// Runs of 2000 samples that are over with their release, and so at different times: draws, noise and
+/// reference of the next run in a lane begin anew.
+#[test]
+fn a_lane_takes_the_next_run_when_its_own_has_ended() {
+    let runs: Vec<u64> = (9..9 + 3 * RUNS).collect();
+    let mut ended = 0;
+    for (i, case) in cases::all().iter().enumerate().step_by(5) {
+        let mut job = job(case);
+        job.samples = 2000;
+        job.limits.after_release_s = 1e-4;
+        if i % 2 == 1 {
+            job.extraction.disturbance.law = DrawLaw::BandLimited { bandwidth_hz: 2e3 };
+        }
+        let columns = columns(&job, 3 * RUNS);
+        let varied = columns.iter().map(|(place, values)| Varied { place: *place, values });
+        let batch = Batch { common: job, runs: &runs, varied: varied.collect() };
+        let with = Instructions::available();
+        let results = finish(&batch, &everything(), 1 + i % 2, with[i % with.len()]);
+        assert_same_as_single(&case.name, &batch, &everything(), &results);
+        ended += results.outcomes.iter().filter(|&&o| o == Outcome::Released).count();
+    }
+    assert!(ended > 500, "{ended}");
 }
 
 /// The mask of bounds comes in when the first run leaves them, and only then.

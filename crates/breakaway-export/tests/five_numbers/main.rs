@@ -4,7 +4,7 @@
 mod batches;
 mod cases;
 
-use breakaway_batch::Pair;
+use breakaway_batch::Four;
 use breakaway_batch::lanes::Wide;
 use breakaway_core::Draws;
 use breakaway_core::sensor::Noise;
@@ -50,7 +50,7 @@ fn a_lane_has_the_bits_of_its_scalar_run() {
 }
 
 /// Vectors of four, four at a time.
-type Many = Pair<Pair<Pair<Pair<f64>>>>;
+type Many = Four<Four<f64>>;
 
 /// How many these are.
 const LANES: u64 = 16;
