@@ -45,7 +45,7 @@ class Asked(StudyModel):
     baselines: list[str] = Field(default_factory=list)
     """Names of the methods that the others are measured against, by the best of them. Left out:
     all."""
-    runs_per_part: Annotated[int, Field(ge=1)] = 2000
+    runs_per_part: Annotated[int, Field(ge=1)] = 5000
     """Parts of the population in one file: many fill the processor's lanes, few are soon lost."""
 
     @model_validator(mode="after")
