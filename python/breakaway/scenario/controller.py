@@ -214,9 +214,9 @@ class TimedImpacts(Model):
     never."""
     low_step_ratio: Fraction = 0.6
     """Share of step_max_m to which it falls at most."""
-    latest_s: Positive = 8.7
+    latest_s: Positive = 7.5
     """When the part should be out for all that, in s: neither caution nor a low force makes steps
-    smaller than this takes."""
+    smaller than this takes. Where target_s is later, neither has an effect."""
     coast_min_s: NotNegative = 1e-3
     """Shortest coast, in s."""
     settled_m: Positive = 3e-6
@@ -241,7 +241,6 @@ class TimedImpacts(Model):
         for low, high in (
             ("step_min_m", "step_max_m"),
             ("lead_min_s", "lead_max_s"),
-            ("target_s", "latest_s"),
             ("slowing_m_per_s", "holding_m_per_s"),
         ):
             a, b = getattr(self, low), getattr(self, high)
