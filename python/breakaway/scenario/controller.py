@@ -152,8 +152,8 @@ class TimedImpacts(Model):
     coasts to rest before the next impact.
 
     Above the force of the first slip an impact first dwells and then is raised: a part that is slow
-    for its mass needs time. A rough slip lowers the ceiling, puts the target off and makes steps smaller;
-    so does a ceiling that has become low, where little is left to stop a heavy part.
+    for its mass needs time. A rough slip lowers the ceiling, puts the target off and makes steps
+    smaller; so does a ceiling that has become low, where little is left to stop a heavy part.
 
     Examples
     --------
