@@ -104,7 +104,7 @@ fn controllers() -> Vec<Controller<f64>> {
         controllers.push(Controller::FmVibration(VibratingPid { pid: pids[i], vibration }));
         let gains = Gains { kp_n_per_m: 3e6, ki_n_per_m_s: 5e8, kd_n_s_per_m: 700.0 };
         let pid = Pid { gains, ..pids[4 - i] };
-        let ramp = FirstStep::ForceRamp(ForceRamp { rate_n_per_s: 1.5e6, travel_m: LENGTH_M });
+        let ramp = FirstStep::ForceRamp(ForceRamp { rate_n_per_s: 1.4e6, travel_m: LENGTH_M });
         let pulses = SecondStep::FmVibration(VibratingPid { pid, vibration });
         let (breakaway, vibration) = match i {
             0 => (FirstStep::Pid(pids[5]), pulses),
