@@ -40,7 +40,6 @@ impl Queue {
 }
 
 /// What the threads of a batch share.
-#[derive(Clone)]
 pub(crate) struct Work<'a> {
     pub(crate) batch: &'a Batch<'a>,
     pub(crate) groups: Groups,
@@ -147,8 +146,9 @@ impl<'a, V: Wide, const N: usize> Pack<'a, V, N> {
         }
     }
 
-    fn samples(&self) -> u64 {
-        self.from.work.batch.common.samples
+    /// Samples that a lane's run still has before it at sample `n`.
+    fn left(&self, lane: usize, n: u64) -> u64 {
+        self.from.work.batch.common.samples - (n - self.begun[lane])
     }
 
     /// Takes blocks of samples until all runs have ended.
@@ -156,8 +156,8 @@ impl<'a, V: Wide, const N: usize> Pack<'a, V, N> {
     fn run(mut self) {
         let mut n = 0;
         while self.heeded.contains(&true) && self.from.work.goes_on() {
-            let first_end = (0..N).map(|lane| self.begun[lane] + self.samples()).min();
-            let end = first_end.map_or(n, |end| end.min(n + BLOCK));
+            let left = (0..N).map(|lane| self.left(lane, n)).fold(BLOCK, u64::min);
+            let end = n + left;
             self.advance(n..end);
             n = end;
             self.hand_over(n);
@@ -171,7 +171,7 @@ impl<'a, V: Wide, const N: usize> Pack<'a, V, N> {
         let goes_on = V::flag(self.moving.metrics.goes_on());
         let mut ended = [0.0; N];
         for lane in 0..N {
-            if n < self.begun[lane] + self.samples() && goes_on.extract(lane) == 1.0 {
+            if self.left(lane, n) > 0 && goes_on.extract(lane) == 1.0 {
                 continue;
             }
             if self.heeded[lane] {
