@@ -44,6 +44,8 @@ const IMPACTS: TimedImpacts<f64> = TimedImpacts {
     force_start_n: 30.0,
     search_time_constant_s: 15e-3,
     rise_time_constant_s: 2e-3,
+    rise_min_s: 1e-3,
+    rise_per_slip: 20.0,
     slowing_m_per_s: 0.01,
     holding_m_per_s: 0.03,
     step_min_m: 30e-6,

@@ -173,7 +173,11 @@ class TimedImpacts(Model):
     search_time_constant_s: Positive = 60e-3
     """Time in which the force grows by e while the joint is searched for, in s."""
     rise_time_constant_s: Positive = 30e-3
-    """Time in which it grows by e once something has slipped, in s."""
+    """Longest time in which it grows by e once something has slipped, in s."""
+    rise_min_s: Positive = 1e-3
+    """Shortest such time, in s."""
+    rise_per_slip: Positive = 1e3
+    """That time over the mean time of a slip: a part that slips quickly is not pushed for long."""
     slowing_m_per_s: NotNegative = 0.004
     """Velocity above which the force grows slower, in m/s."""
     holding_m_per_s: Positive = 0.01
@@ -181,7 +185,7 @@ class TimedImpacts(Model):
     step_min_m: Positive = 30e-6
     """Smallest step, in m."""
     step_max_m: Positive = 90e-6
-    """Largest step, in m."""
+    """Largest step while the part is not late, in m."""
     travel_min_m: NotNegative = 6e-6
     """Travel below which nothing counts as a slip, in m."""
     restart_ratio: Fraction = 0.93
@@ -200,7 +204,7 @@ class TimedImpacts(Model):
     dwell_kept_share: Fraction = 0.9
     """Share of the dwell that stays after a slip that was seen."""
     rough_slip_m: Positive = 150e-6
-    """Travel of a slip beyond which it is rough, in m."""
+    """Travel of a slip beyond which it is rough, in m, and the largest step of a part that is late."""
     rough_cut_ratio: Fraction = 0.1
     """Share by which a rough slip lowers the ceiling."""
     patience_s: NotNegative = 0.2
@@ -216,7 +220,8 @@ class TimedImpacts(Model):
     """Share of step_max_m to which it falls at most."""
     latest_s: Positive = 7.5
     """When the part should be out for all that, in s: neither caution nor a low force makes steps
-    smaller than this takes. Where target_s is later, neither has an effect."""
+    smaller than this takes, and steps beyond step_max_m are made if it takes them. Where target_s is
+    later, neither has an effect."""
     coast_min_s: NotNegative = 1e-3
     """Shortest coast, in s."""
     settled_m: Positive = 3e-6

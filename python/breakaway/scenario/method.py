@@ -4,14 +4,36 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from breakaway.scenario.actuator import Actuator
 from breakaway.scenario.controller import Controller
-from breakaway.scenario.model import Model
+from breakaway.scenario.model import Model, Positive
 from breakaway.scenario.reference import Reference
 
-Known = Literal["engagement_length_m"]
+Array = NDArray[np.float64]
+Quantity = Literal["engagement_length_m"]
+
+
+class Multiple(Model):
+    """A quantity of each part, times a number that is the same for all.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> told = bk.load_method("vibrated_feed").knows["controller.feed.speed_m_per_s"]
+    >>> told.of, told.times
+    ('engagement_length_m', 0.11)
+
+    """
+
+    of: Quantity
+    """What is known of a part."""
+    times: Positive
+    """What it is multiplied by, in the unit of the number that is told over that of the quantity: a
+    speed in m/s that is 0.1 times a length in m needs 10 s for it."""
 
 
 class Method(Model):
@@ -36,6 +58,14 @@ class Method(Model):
     part."""
     reference: Reference | None = None
     """Where the part should be, for controllers that follow one. Left out: 0."""
-    knows: dict[str, Known] = Field(default_factory=dict)
-    """Numbers that are told the length of engagement of each part, by dotted path, such as
-    ``controller.travel_m``; everything else is the same for all parts."""
+    knows: dict[str, Quantity | Multiple] = Field(default_factory=dict)
+    """Numbers that are told the length of engagement of each part, or a multiple of it, by dotted
+    path, such as ``controller.travel_m``; everything else is the same for all parts."""
+
+    def told(self, engagement_length_m: Array) -> dict[str, Array]:
+        """Give the numbers that each part sets, by dotted path."""
+        length_m = engagement_length_m
+        return {
+            path: told.times * length_m if isinstance(told, Multiple) else length_m
+            for path, told in self.knows.items()
+        }

@@ -69,9 +69,7 @@ def part_columns(
         )
     if law == "gms":
         columns["joint.attraction_n_per_s"] = stiction / population.laws.gms_lag_s
-    for path in method.knows:
-        columns[path] = parts["engagement_length_m"]
-    return columns
+    return columns | method.told(parts["engagement_length_m"])
 
 
 def steps_per_period(population: PartPopulation, parts: dict[str, Array]) -> NDArray[np.int64]:

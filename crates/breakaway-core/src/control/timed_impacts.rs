@@ -25,7 +25,8 @@ parameters! {
     ///
     /// Exponential growth makes an overshoot relative: a weak part meets as many percent too much as
     /// a strong one. The first search rises from F_1 with τ_s until something slips, at F_b. From then
-    /// on an impact rises with τ from `restart_ratio` C to the ceiling C. There it ends, unless the
+    /// on an impact rises with τ, which is in proportion to the time s / max v̂ that slips of this part
+    /// take, within its limits, from `restart_ratio` C to the ceiling C. There it ends, unless the
     /// part is seen to move: what is heavy for its friction is pushed on, to Δ; what slips at the peak
     /// slips under a force that already falls, so that the slip need not be seen to be short. The
     /// ceiling is set so that impacts make the step:
@@ -42,7 +43,9 @@ parameters! {
     /// After a rough slip, C is lowered and t_end put off: smaller forces, which are enough only
     /// while friction is low, let go of less. Each second that t_end is put off also takes a share from
     /// the largest Δ. So does a ceiling that is low against F_b, towards the end of the guide: there
-    /// little is left to stop a heavy part. Neither makes Δ smaller than being out at `latest_s` takes.
+    /// little is left to stop a heavy part. Neither makes Δ smaller than being out at `latest_s` takes;
+    /// that may take more than the largest Δ, up to the length of a rough slip, and then slips are
+    /// rough only from a length that is larger in proportion.
     ///
     /// v̂ is the largest slope of least squares over 3, 5 and 8 positions, each less `noise_margin` of
     /// its deviation from noise; where it slows the rise and times the cut, only once x has left x₀
@@ -59,15 +62,19 @@ parameters! {
         pub force_start_n,
         /// τ_s in s.
         pub search_time_constant_s,
-        /// τ in s.
+        /// Largest τ in s.
         pub rise_time_constant_s,
+        /// Smallest τ in s.
+        pub rise_min_s,
+        /// τ over the mean time of a slip.
+        pub rise_per_slip,
         /// v_1 in m/s: above this v̂ the force grows slower.
         pub slowing_m_per_s,
         /// v_2 in m/s: above this v̂ it does not grow.
         pub holding_m_per_s,
         /// Smallest Δ in m.
         pub step_min_m,
-        /// Largest Δ in m.
+        /// Largest Δ in m while the part is not late.
         pub step_max_m,
         /// Travel in m beyond the recoil below which nothing counts as a slip.
         pub travel_min_m,
@@ -85,7 +92,7 @@ parameters! {
         pub dwell_max_s,
         /// Share of the dwell that stays after a slip that was seen.
         pub dwell_kept_share,
-        /// Travel of a slip in m beyond which it is rough.
+        /// Travel of a slip in m beyond which it is rough, and Δ never is.
         pub rough_slip_m,
         /// Share by which a rough slip lowers C.
         pub rough_cut_ratio,
@@ -160,6 +167,10 @@ parameters! {
         pub start_m,
         /// Largest position in the cycle, m.
         pub furthest_m,
+        /// Largest v̂ in the cycle, m/s.
+        pub fastest_m_per_s,
+        /// Mean time that a slip takes, s, 0 before the first.
+        pub slip_s,
         /// κ in s.
         pub lead_s,
         /// Δ in m.
@@ -203,6 +214,8 @@ impl<R: Real> TimedImpactsState<R> {
             put_off_s: zero,
             start_m: zero,
             furthest_m: zero,
+            fastest_m_per_s: zero,
+            slip_s: zero,
             lead_s: zero,
             step_m: zero,
             recoil_m: zero,
@@ -260,6 +273,7 @@ impl<R: Real> TimedImpacts<R> {
         let stretched = (n.start_m + n.recoil_m + self.travel_min_m).named("stretched_m");
         let v = R::select(stretched.lt(measured.position_m), seen, R::zero());
         let v = v.named("seen_m_per_s");
+        n.fastest_m_per_s = n.fastest_m_per_s.max(v);
         let rising = !n.coasting.is_set() & !n.free.is_set();
         let known = R::zero().lt(n.ceiling_n);
         let at_ceiling = rising & known & n.ceiling_n.le(n.force_n);
@@ -336,7 +350,9 @@ impl<R: Real> TimedImpacts<R> {
         let range = (self.holding_m_per_s - self.slowing_m_per_s).named("slowing_range_m_per_s");
         let b = (one - (v - self.slowing_m_per_s) / range).clamp(zero, one).named("growth");
         let known = zero.lt(n.ceiling_n);
-        let tau = R::select(known, self.rise_time_constant_s, self.search_time_constant_s);
+        let quick = (self.rise_per_slip * n.slip_s).max(self.rise_min_s);
+        let rise = quick.min(self.rise_time_constant_s).named("rise_s");
+        let tau = R::select(known, rise, self.search_time_constant_s);
         let tau = tau.named("time_constant_s");
         let grown = (n.force_n * (b * measured.period_s / tau + one)).named("grown_n");
         let limited = measured.range.limit(grown).named("limited_n");
@@ -367,7 +383,7 @@ impl<R: Real> TimedImpacts<R> {
     /// The cycle after this one, from where the part rests.
     #[inline(always)]
     fn next_cycle(&self, n: &ImpactNumbers<R>) -> ImpactNumbers<R> {
-        R::section("impacts, next cycle: recoil, duration, delay of the end");
+        R::section("impacts, next cycle: recoil, duration, time of a slip, delay of the end");
         let (zero, share) = (R::zero(), R::constant(NEW_SHARE));
         let first = n.ceiling_n.le(zero);
         let travel = (n.furthest_m - n.start_m).named("travel_m");
@@ -375,7 +391,11 @@ impl<R: Real> TimedImpacts<R> {
         let recoil = recoil.named("recoil_m");
         let mean_cycle = share.mul_add(n.in_cycle_s - n.cycle_s, n.cycle_s).named("mean_cycle_s");
         let cycle = R::select(first, R::constant(FIRST_CYCLE_S), mean_cycle).named("cycle_s");
-        let rough = self.rough_slip_m.lt(travel);
+        let took = (travel / n.fastest_m_per_s.max(self.slowing_m_per_s)).named("took_s");
+        let mean_slip = share.mul_add(took - n.slip_s, n.slip_s);
+        let slip = R::select(n.slip_s.le(zero), took, mean_slip).named("mean_slip_s");
+        let usual = (n.step_m / self.step_max_m).max(R::one()).named("step_ratio");
+        let rough = (self.rough_slip_m * usual).lt(travel);
         let later = (n.put_off_s + self.patience_s).min(self.patience_max_s);
         let put_off = R::select(rough, later, n.put_off_s).named("put_off_s");
         let (ceiling, dwell) = self.next_ceiling(n, travel, rough);
@@ -390,6 +410,8 @@ impl<R: Real> TimedImpacts<R> {
             put_off_s: put_off,
             start_m: n.mean_m,
             furthest_m: n.mean_m,
+            fastest_m_per_s: zero,
+            slip_s: R::select(n.seen_to_slip.is_set(), slip, n.slip_s),
             lead_s: self.next_lead(n, travel),
             recoil_m: recoil,
             cycle_s: cycle,
@@ -408,9 +430,9 @@ impl<R: Real> TimedImpacts<R> {
         let calm = (-self.caution_per_s).mul_add(n.put_off_s, one).named("calm_share");
         let force = n.ceiling_n / (self.low_force_ratio * n.first_slip_n);
         let low = force.clamp(self.low_step_ratio, one).named("low_share");
-        let most =
-            (self.step_max_m * calm * low).max(self.needed(n, self.latest_s)).min(self.step_max_m);
-        let most = most.max(self.step_min_m).named("largest_step_m");
+        let late = self.needed(n, self.latest_s).min(self.rough_slip_m.max(self.step_max_m));
+        let most = (self.step_max_m * calm * low).max(late).max(self.step_min_m);
+        let most = most.named("largest_step_m");
         self.needed(n, self.target_s + n.put_off_s).clamp(self.step_min_m, most)
     }
 

@@ -274,6 +274,8 @@ const IMPACTS: TimedImpacts<f64> = TimedImpacts {
     force_start_n: 300.0,
     search_time_constant_s: 5e-4,
     rise_time_constant_s: 3e-4,
+    rise_min_s: 2e-4,
+    rise_per_slip: 2.0,
     slowing_m_per_s: 0.2,
     holding_m_per_s: 0.6,
     step_min_m: 2e-4,
