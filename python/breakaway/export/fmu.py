@@ -86,7 +86,8 @@ def export_fmu(
     fmi : {"2", "3"}
         Version of the standard.
     out : path
-        The file, such as ``rig.fmu``. It is replaced, whole or not at all.
+        The file, such as ``rig.fmu``. It is replaced, whole or not at all; missing folders are
+        made.
 
     Returns
     -------
