@@ -6,6 +6,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -227,6 +228,21 @@ def test_an_imposed_motion_out_of_range_is_refused(scenario, name, value):
         bk.impose_motion(joint, **{**good, name: value})
     with pytest.raises(bk.ScenarioError, match=r"^joint\.residual_n: is missing; give"):
         bk.impose_motion(scenario.joint, **good)
+
+
+@pytest.mark.parametrize("given", ["paper_as_computed", Path("mine.toml"), None])
+def test_what_is_no_scenario_is_refused(given, tmp_path):
+    takers = (
+        bk.resolve,
+        bk.simulate,
+        lambda given: bk.simulate_many(given, runs=2),
+        lambda given: bk.export_c(given, out=tmp_path / "c"),
+        lambda given: bk.export_fmu(given, out=tmp_path / "rig.fmu"),
+    )
+    for take in takers:
+        with pytest.raises(bk.ScenarioError, match=r"^scenario: .* is not a Scenario; load_scen"):
+            take(given)
+    assert not list(tmp_path.iterdir())
 
 
 # Reproducibility

@@ -72,8 +72,8 @@ def export_c(
     Raises
     ------
     ScenarioError
-        `what` or `real` is not known, the controller can not be designed for this joint, or a
-        number is out of its range as float.
+        It is no scenario, `what` or `real` is not known, the controller can not be designed for
+        this joint, or a number is out of its range as float.
     OutputError
         The folder can not be written.
 

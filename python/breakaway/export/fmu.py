@@ -96,8 +96,8 @@ def export_fmu(
     Raises
     ------
     ScenarioError
-        `what` or `fmi` is not known, the controller can not be designed for this joint, or the
-        seed is beyond the integers of FMI 2.
+        It is no scenario, `what` or `fmi` is not known, the controller can not be designed for this
+        joint, or the seed is beyond the integers of FMI 2.
     OutputError
         The file can not be written.
 
