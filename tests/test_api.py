@@ -293,6 +293,34 @@ def test_without_a_trace_the_figures_are_the_same(rough):
     assert repr(silent.metrics) == repr(bk.simulate(rough).metrics)
 
 
+@pytest.mark.parametrize("method", ["steady_feed", "vibrated_feed"])
+def test_the_trace_of_a_feed_axis_has_drive_tool_and_tip(method):
+    population, method = bk.load_population("seized_parts"), bk.load_method(method)
+    part = bk.run_trial(population, method, runs=range(1), seed=0).scenario(0)
+    run = bk.simulate(part.with_({"timing.duration_s": 0.3}))
+    assert tuple(run.trace) == (*COLUMNS, "feed_m", "tool_m", "tip_m")
+    assert set(run.to_xarray().data_vars) == set(run.trace) - {"t_s"}
+    feed, tool, tip = (run.trace[name] for name in ("feed_m", "tool_m", "tip_m"))
+    assert feed[0] == tool[0] == tip[0] == -method.actuator.contact.gap_m
+    assert method.actuator.tip.kind == "piezo" or np.array_equal(tool, tip)
+    shorter = bk.simulate(part.with_({"timing.duration_s": 0.2}))
+    sparse = bk.simulate(part.with_({"timing.duration_s": 0.3, "trace.every_samples": 10}))
+    for name, values in run.trace.items():
+        if "force" not in name:  # of the period that the last row ends
+            assert shorter.trace[name][-1] == values[len(shorter.trace[name]) - 1], name
+        np.testing.assert_array_equal(sparse.trace[name][:600], values[:6000:10], err_msg=name)
+
+
+@pytest.mark.parametrize("every", [1, 7])
+def test_a_feed_axis_that_diverges_has_a_row_of_everything(every):
+    population, method = bk.load_population("seized_parts"), bk.load_method("vibrated_feed")
+    part = bk.run_trial(population, method, runs=range(1), seed=0).scenario(0)
+    run = bk.simulate(part.with_({"limits.diverged_force_n": 50.0, "trace.every_samples": every}))
+    assert run.outcome == "diverged"
+    assert len({column.shape for column in run.trace.values()}) == 1
+    assert (np.diff(run.trace["feed_m"]) >= 0.0).all()
+
+
 @pytest.mark.parametrize("every", [10, 1000])
 def test_the_trace_of_a_run_that_diverges_ends_where_it_does(scenario, every):
     unstable = scenario.with_(
