@@ -274,7 +274,7 @@ impl<R: Real> Period<R> {
 
 impl<R: Real> Extraction<R> {
     /// Applies `f` to every number, for example to gather runs into lanes.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Extraction<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Extraction<S> {
         Extraction {
             joint: within!("joint", self.joint, f),
             part: within!("part", self.part, f),
