@@ -4,8 +4,9 @@ mod laws;
 mod support;
 
 use breakaway_core::Maybe;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::Lugre;
-use breakaway_core::plant::{PlantState, impose_motion};
+use breakaway_core::plant::PlantState;
 use support::Rig;
 
 /// What backward levels are multiplied by.

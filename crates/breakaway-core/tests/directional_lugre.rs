@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use breakaway_core::Maybe;
 use breakaway_core::disturbance::Factors;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::{Bristle, DirectionalLugre, Joint, JointState, Law, Lugre};
-use breakaway_core::plant::{Integrator, Plant, PlantState, Push, impose_motion};
+use breakaway_core::plant::{Integrator, Plant, PlantState, Push};
 
 const UNDISTURBED: Factors<f64> = Factors { joint_force: 1.0, friction_level: 1.0 };
 

@@ -5,8 +5,9 @@ mod laws;
 mod support;
 
 use breakaway_core::Maybe;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::{Joint, Lugre};
-use breakaway_core::plant::{PlantState, Push, impose_motion};
+use breakaway_core::plant::{PlantState, Push};
 use breakaway_core::test_models::paper_joint;
 use support::{Rig, random};
 
