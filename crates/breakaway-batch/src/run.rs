@@ -318,7 +318,7 @@ impl Run {
 
 impl Job {
     /// Applies `f` to every number: those of the extraction, then those of the limits.
-    pub(crate) fn map_numbers<S>(
+    pub(crate) fn map_numbers<S: Real>(
         &self,
         f: &mut impl FnMut(Name<'_>, f64) -> S,
     ) -> (Extraction<S>, Limits<S>) {
@@ -329,7 +329,10 @@ impl Job {
     #[must_use]
     pub fn numbers(&self) -> Vec<f64> {
         let mut numbers = Vec::new();
-        self.map_numbers(&mut |_, value| numbers.push(value));
+        self.map_numbers(&mut |_, value| {
+            numbers.push(value);
+            value
+        });
         numbers
     }
 
