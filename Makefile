@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PEERS := $(VENV)/peers
 UV := $(BIN)/uv --quiet
-RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
+RUST_SOURCES := $(shell find crates -not -path '*/tests/*' \( -name '*.rs' -o -name 'Cargo.toml' \)) Cargo.toml Cargo.lock pyproject.toml
 CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
 
 .PHONY: help demo test test-firmware lint bench peers docs lock clean
@@ -50,7 +50,8 @@ docs: $(VENV)/.built
 	cargo doc --quiet --locked --workspace --exclude breakaway-python --no-deps
 	$(BIN)/python tools/draw_readme.py
 
-# Setup, in steps that are redone only when what they read has changed.
+# Setup, in steps that are redone only when what they read has changed. A build is as old as its
+# beginning: sources that are edited while it goes on are newer.
 $(VENV)/.installer: tools/check_toolchain.sh requirements/installer.lock
 	@sh tools/check_toolchain.sh $(PYTHON)
 	$(PYTHON) -m venv $(VENV)
@@ -66,9 +67,10 @@ $(VENV)/.development: $(VENV)/.runtime requirements/dev.lock
 	@touch $@
 
 $(VENV)/.built: $(VENV)/.runtime $(RUST_SOURCES)
+	@touch $@.begun
 	@sh tools/check_toolchain.sh $(PYTHON)
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(UV) pip install --python $(BIN)/python --no-deps --no-build-isolation --reinstall-package breakaway --editable .
-	@touch $@
+	@mv $@.begun $@
 
 $(PEERS)/.installed: $(VENV)/.runtime bench/peers/requirements.lock
 	$(PYTHON) -m venv $(PEERS)

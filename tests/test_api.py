@@ -6,6 +6,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -229,6 +230,21 @@ def test_an_imposed_motion_out_of_range_is_refused(scenario, name, value):
         bk.impose_motion(scenario.joint, **good)
 
 
+@pytest.mark.parametrize("given", ["paper_as_computed", Path("mine.toml"), None])
+def test_what_is_no_scenario_is_refused(given, tmp_path):
+    takers = (
+        bk.resolve,
+        bk.simulate,
+        lambda given: bk.simulate_many(given, runs=2),
+        lambda given: bk.export_c(given, out=tmp_path / "c"),
+        lambda given: bk.export_fmu(given, out=tmp_path / "rig.fmu"),
+    )
+    for take in takers:
+        with pytest.raises(bk.ScenarioError, match=r"^scenario: .* is not a Scenario; load_scen"):
+            take(given)
+    assert not list(tmp_path.iterdir())
+
+
 # Reproducibility
 
 
@@ -275,6 +291,34 @@ def test_without_a_trace_the_figures_are_the_same(rough):
     silent = bk.simulate(rough.with_({"trace.every_samples": 0}))
     assert all(column.size == 0 for column in silent.trace.values())
     assert repr(silent.metrics) == repr(bk.simulate(rough).metrics)
+
+
+@pytest.mark.parametrize("method", ["steady_feed", "vibrated_feed"])
+def test_the_trace_of_a_feed_axis_has_drive_tool_and_tip(method):
+    population, method = bk.load_population("seized_parts"), bk.load_method(method)
+    part = bk.run_trial(population, method, runs=range(1), seed=0).scenario(0)
+    run = bk.simulate(part.with_({"timing.duration_s": 0.3}))
+    assert tuple(run.trace) == (*COLUMNS, "feed_m", "tool_m", "tip_m")
+    assert set(run.to_xarray().data_vars) == set(run.trace) - {"t_s"}
+    feed, tool, tip = (run.trace[name] for name in ("feed_m", "tool_m", "tip_m"))
+    assert feed[0] == tool[0] == tip[0] == -method.actuator.contact.gap_m
+    assert method.actuator.tip.kind == "piezo" or np.array_equal(tool, tip)
+    shorter = bk.simulate(part.with_({"timing.duration_s": 0.2}))
+    sparse = bk.simulate(part.with_({"timing.duration_s": 0.3, "trace.every_samples": 10}))
+    for name, values in run.trace.items():
+        if "force" not in name:  # of the period that the last row ends
+            assert shorter.trace[name][-1] == values[len(shorter.trace[name]) - 1], name
+        np.testing.assert_array_equal(sparse.trace[name][:600], values[:6000:10], err_msg=name)
+
+
+@pytest.mark.parametrize("every", [1, 7])
+def test_a_feed_axis_that_diverges_has_a_row_of_everything(every):
+    population, method = bk.load_population("seized_parts"), bk.load_method("vibrated_feed")
+    part = bk.run_trial(population, method, runs=range(1), seed=0).scenario(0)
+    run = bk.simulate(part.with_({"limits.diverged_force_n": 50.0, "trace.every_samples": every}))
+    assert run.outcome == "diverged"
+    assert len({column.shape for column in run.trace.values()}) == 1
+    assert (np.diff(run.trace["feed_m"]) >= 0.0).all()
 
 
 @pytest.mark.parametrize("every", [10, 1000])

@@ -25,13 +25,18 @@ def test_write_replaces_the_whole_file(tmp_path: Path) -> None:
     assert path.stat().st_mode & 0o777 == 0o666 & ~umask
 
 
-@pytest.mark.parametrize("place", ["none/a.txt", "file/a.txt", "folder", "/dev/null/x"])
+@pytest.mark.parametrize("place", ["file/a.txt", "file/none/a.txt", "folder", "/dev/null/x"])
 def test_write_names_the_place_it_can_not_write(tmp_path: Path, place: str) -> None:
     (tmp_path / "file").write_text("")
     (tmp_path / "folder").mkdir()
     with pytest.raises(OutputError, match="can not be written"):
         write_atomically(tmp_path / place, b"content")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "folder"]
+
+
+def test_write_makes_missing_folders(tmp_path: Path) -> None:
+    write_atomically(tmp_path / "deep" / "down" / "a.txt", b"content")
+    assert [path.read_bytes() for path in (tmp_path / "deep" / "down").iterdir()] == [b"content"]
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), OSError(28, "No space left on device")])

@@ -15,14 +15,14 @@ from breakaway.errors import OutputError
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file under a temporary name in its folder, then rename it.
+    """Write a file under a temporary name in its folder, then rename it; make missing folders.
 
     Devices and pipes, such as ``/dev/stdout``, are written to and stay what they are.
 
     Raises
     ------
     OutputError
-        The folder is missing or not writable, or the disk is full.
+        The folder can not be made or not be written to, or the disk is full.
 
     """
     try:
@@ -30,6 +30,8 @@ def write_atomically(path: Path, content: bytes) -> None:
         if path.exists() and not path.is_file():
             path.write_bytes(content)
             return
+        with suppress(FileExistsError):  # a file in the way is told below
+            path.parent.mkdir(parents=True)
     except OSError as error:
         raise _not_written(path, error) from None
     # The name is known before the file is there, so that a Ctrl-C at any moment leaves none behind.

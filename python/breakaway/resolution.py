@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, TypeVar
 
 from breakaway.design.pole_placement import pole_placement, residual_n
+from breakaway.errors import ScenarioError
 from breakaway.scenario.actuator import ForceActuator
 from breakaway.scenario.controller import (
     AnyController,
@@ -22,6 +23,14 @@ from breakaway.scenario.scenario import Scenario
 AnyPart = TypeVar("AnyPart", bound=Model)
 
 
+def check_scenario(given: object) -> None:
+    """Refuse what is no scenario, such as the name of a preset."""
+    if not isinstance(given, Scenario):
+        raise ScenarioError(
+            f"scenario: {given!r} is not a Scenario; load_scenario gives that of a preset or a file"
+        )
+
+
 def resolve(scenario: Scenario) -> Scenario:
     """Replace what a scenario leaves open by numbers: gains, residual force, limits.
 
@@ -36,7 +45,7 @@ def resolve(scenario: Scenario) -> Scenario:
     Raises
     ------
     ScenarioError
-        The controller can not be designed for this joint.
+        It is no scenario, or the controller can not be designed for this joint.
 
     Examples
     --------
@@ -45,6 +54,7 @@ def resolve(scenario: Scenario) -> Scenario:
     'given'
 
     """
+    check_scenario(scenario)
     joint, limits = scenario.joint, scenario.limits
     explicit_joint = joint.model_copy(
         update={"residual_n": residual_n(joint, scenario.part.mass_kg)}

@@ -116,7 +116,12 @@ class Run:
     trace: Mapping[str, NDArray[np.float64]]
     """Columns ``t_s``, ``reference_m``, ``position_m``, ``velocity_m_per_s``, ``bristle_m``,
     ``applied_force_n`` and ``joint_force_n``, read-only; empty without a trace. A row holds the
-    state at a control sample and the forces during the period after it."""
+    state at a control sample and the forces during the period after it.
+
+    With a feed axis also ``feed_m``, ``tool_m`` and ``tip_m``: where the tip's face would be if
+    axis and stack were relaxed, if the stack were, and where it is. ``position_m - tip_m`` is the
+    gap, below zero where the tip presses on the part; ``tip_m - tool_m`` what the stack lengthens,
+    ``feed_m - tool_m`` what the axis yields."""
     scenario: Scenario
     """What was run, every number explicit."""
     seed: int
@@ -173,5 +178,8 @@ TRACE_UNITS = {
     "bristle_m": "m",
     "applied_force_n": "N",
     "joint_force_n": "N",
+    "feed_m": "m",
+    "tool_m": "m",
+    "tip_m": "m",
 }
 """Column of a trace -> its unit."""

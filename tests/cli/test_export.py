@@ -70,7 +70,16 @@ def test_a_unit_that_can_not_be_written_is_named(call: Call, tmp_path: Path) -> 
     done = call("export", "fmu", "paper_as_computed", "--fmi", "1", "--out", tmp_path / "rig.fmu")
     assert done.exit_code == 2
     assert "'2', '3'" in done.stderr
-    done = call("export", "fmu", "paper_as_computed", "--out", tmp_path / "missing" / "rig.fmu")
+    (tmp_path / "file").write_text("")
+    done = call("export", "fmu", "paper_as_computed", "--out", tmp_path / "file" / "rig.fmu")
     assert done.exit_code == 3
     assert "give a folder that you can write to" in done.stderr.replace("\n", " ")
-    assert not list(tmp_path.iterdir())
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize("arguments", [("c", "out"), ("fmu", "out/rig.fmu")])
+def test_missing_folders_are_made(call: Call, tmp_path: Path, arguments: tuple[str, str]) -> None:
+    kind, place = arguments
+    out = tmp_path / "deep" / place
+    assert call("export", kind, "paper_as_computed", "--out", out).exit_code == 0
+    assert out.exists()

@@ -30,7 +30,8 @@ def columns_of(folder: Path, law: str, method: str) -> dict[str, np.ndarray]:
 
 def test_the_folder_has_everything(whole, done):
     names = {path.name for path in whole.iterdir()}
-    figures = {"shares", "jump_against_peak", "course_1", "course_2", "course_3"}
+    courses = {f"course_{place}_{law}" for place in (1, 2, 3) for law in LAWS}
+    figures = {"shares", "jump_against_peak", *courses}
     assert names == {
         ".lock", "manifest.json", "comparison.toml", "table.csv", "summary.json", "index.html",
         "parts", *(f"{name}.{kind}" for name in figures for kind in ("png", "svg")),
@@ -151,6 +152,28 @@ def test_the_worst_slip_has_the_largest_jump(done):
         course = course_of(trial, worst_row(trial))
         assert course.slip_s[1] > course.slip_s[0]
         assert course.whole["force_n"].max() == run.trace["applied_force_n"].max()
+
+
+@pytest.mark.parametrize("name", ["steady_feed", "vibrated_feed"])
+def test_a_feed_axis_tells_where_drive_tool_and_tip_are(name):
+    population, method = bk.load_population("seized_parts"), bk.load_method(name)
+    trial = bk.run_trial(population, method, runs=range(1), seed=0)
+    course = course_of(trial, 0)
+    stack = name == "vibrated_feed"
+    assert ("tool_m" in course.whole, "tool_m" in course.slip) == (stack, stack)
+    gap = course.whole["position_m"] - course.whole["tip_m"]
+    assert gap[0] == method.actuator.contact.gap_m
+    # k_c d within what the contact's damper adds, c_c times a speed of 10 mm/s
+    pressed = course.slip["tip_m"] - course.slip["position_m"]
+    np.testing.assert_allclose(course.slip["force_n"], 3e8 * pressed, atol=0.2 * 3e8 * 1e-5)
+    ahead = course.whole["feed_m"] - course.whole.get("tool_m", course.whole["tip_m"])
+    peak = np.argmax(course.whole["force_n"])
+    assert ahead[peak] == pytest.approx(course.whole["force_n"][peak] / 3e7, rel=0.5)
+
+
+def test_a_force_has_no_tip(done):
+    course = course_of(done.trials["lugre"]["ramp"], 0)
+    assert set(course.whole) == {"t_s", "position_m", "force_n", "breakaway_n"}
 
 
 def test_thinning_keeps_extremes_and_ends():

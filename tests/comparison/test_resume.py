@@ -101,7 +101,7 @@ def test_a_finished_comparison_computes_and_draws_nothing(whole, tmp_path, monke
 
 def test_a_missing_file_of_the_end_is_made_again(whole, tmp_path):
     folder = shutil.copytree(whole, tmp_path / "done")
-    (folder / "course_2.svg").unlink()
+    (folder / "course_2_lugre.svg").unlink()
     bk.compare_methods(folder / "comparison.toml", out=folder, resume=True)
     assert contents(folder) == contents(whole)
 

@@ -113,6 +113,12 @@ def test_what_can_not_be_written_says_what_to_do(tmp_path: Path) -> None:
         bk.export_fmu(paper().with_(seed=2**40), what="loop", fmi="2", out=tmp_path / "rig.fmu")
     with pytest.raises(bk.OutputError, match="is a folder; name a file in it"):
         bk.export_fmu(paper(), out=tmp_path)
+    (tmp_path / "file").write_text("")
     with pytest.raises(bk.OutputError, match="give a folder"):
-        bk.export_fmu(paper(), out=tmp_path / "missing" / "rig.fmu")
-    assert list(tmp_path.iterdir()) == []
+        bk.export_fmu(paper(), out=tmp_path / "file" / "rig.fmu")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_missing_folders_are_made(tmp_path: Path) -> None:
+    written = bk.export_fmu(paper(), out=tmp_path / "deep" / "down" / "rig.fmu")
+    assert [*(tmp_path / "deep" / "down").iterdir()] == [written.path]

@@ -104,7 +104,7 @@ def test_refuses_negative_friction(fit: InertiaFrictionFit, log: Log, name: str)
 def test_refuses_to_save_where_it_can_not(joint: JointFile, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     (tmp_path / "folder").mkdir()
-    for place in ("none/joint.toml", "file/joint.toml", "folder"):
+    for place in ("file/joint.toml", "file/none/joint.toml", "folder"):
         with pytest.raises(OutputError, match="can not be written"):
             joint.save(tmp_path / place)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder"]

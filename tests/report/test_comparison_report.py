@@ -30,7 +30,8 @@ STRICT = Gentleness(
 )
 
 
-def course(index: int) -> Course:
+def course(index: int, *, axis: bool = False) -> Course:
+    """A part that slips, pushed by a force or by a stack whose tip is 20 um behind in the end."""
     t = np.linspace(0.0, 2.0, 201)
     x = np.where(t < 1.0, 0.0, 0.03 * np.minimum(t - 1.0, 0.5))
     whole = {
@@ -39,6 +40,9 @@ def course(index: int) -> Course:
         "force_n": np.where(t < 1.5, 400.0 * t, 0.0),
         "breakaway_n": 500.0 - 1e4 * x,
     }
+    if axis:
+        tip = x + np.where(t < 1.5, 1e-6, -2e-5)
+        whole |= {"feed_m": x + 3e-4, "tool_m": tip - 5e-5, "tip_m": tip}
     slip = {name: values[95:160] for name, values in whole.items()}
     return Course(
         run_index=index, released=True, stiction_n=500.0, length_m=0.02, mass_kg=1.0,
@@ -84,12 +88,14 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> str:
         "shares": (plot_shares(rows), ""),
         "jump_against_peak": (plot_scatter(clouds, GENTLE, STRICT), ""),
         "course_1": (plot_course(None, course(3)), names[0]),
-        "course_2": (plot_course(course(1), course(2)), names[1]),
+        "course_2": (plot_course(course(1, axis=True), course(2, axis=True)), names[1]),
     }
     figures = []
     for key, (figure, name) in drawn.items():
-        save_figure(figure, folder / f"{key}.svg")
-        figures.append(ShownFigure(key, f"{key}.", "A caption.", folder / f"{key}.svg", name))
+        for law in ("lugre", "gms") if name else ("",):
+            file = folder / f"{key}_{law}.svg"
+            save_figure(figure, file)
+            figures.append(ShownFigure(file.stem, f"{key}.", "A caption.", file, name, law))
     return comparison_page(
         population=load_population("seized_parts"),
         methods=methods,
@@ -100,7 +106,10 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> str:
         result=["one & two <three>", "CAUTION, one law only: this"],
         notes=["a note"],
         figures=figures,
-        courses={name: course(place) for place, name in enumerate(names)},
+        courses={
+            law: {names[0]: course(place), names[1]: course(place + 1, axis=True)}
+            for place, law in enumerate(("lugre", "gms"))
+        },
     )
 
 
@@ -136,8 +145,30 @@ def test_names_are_escaped(page):
     data = re.search(r'<script type="application/json" id="courses">(.*?)</script>', page)
     assert data is not None
     scenes = json.loads(data[1])
-    assert [scene["method"] for scene in scenes] == [NAME, "paper_pid"]
+    assert [(scene["law"], scene["method"]) for scene in scenes] == [
+        ("lugre", NAME), ("lugre", "paper_pid"), ("gms", NAME), ("gms", "paper_pid"),
+    ]  # fmt: skip
     assert scenes[0]["slip"]["x"][-1] == 15.0
+
+
+def test_positions_of_an_axis_are_told_where_there_is_one(page):
+    data = re.search(r'<script type="application/json" id="courses">(.*?)</script>', page)
+    assert data is not None
+    force, axis = json.loads(data[1])[:2]
+    assert not {"drive", "tool", "tip"} & set(force["slip"])
+    for kept in (axis["slip"], axis["whole"]):
+        assert kept["drive"][0] == 0.3
+        assert kept["tip"][0] - kept["tool"][0] == pytest.approx(0.05)
+        assert kept["x"][-1] - kept["tip"][-1] == pytest.approx(0.02)
+
+
+def test_there_is_a_figure_of_each_method_under_each_law(page):
+    shown = [v for tag, v in Page(page).tags if tag == "figure" and v.get("data-law")]
+    assert [(v["id"], v["data-law"]) for v in shown] == [
+        ("course_1_lugre", "lugre"), ("course_1_gms", "gms"),
+        ("course_2_lugre", "lugre"), ("course_2_gms", "gms"),
+    ]  # fmt: skip
+    assert not any("hidden" in v for v in shown)  # all are there without JavaScript
 
 
 def test_the_table_marks_the_best_and_shows_wear_where_there_is_a_stack(page):
@@ -231,9 +262,20 @@ press("End"); found.end = time();
 press("Home"); found.home = time();
 document.querySelector('input[value="whole"]').click(); found.whole = time();
 press("End"); found.wholeEnd = time();
-choice.value = 1; choice.dispatchEvent(new Event("change"));
-found.told = document.getElementById("told").textContent;
 const seek = document.getElementById("seek");
+const words = () => document.getElementById("told").textContent;
+const law = document.querySelector("#methods select.law"), hidden = () =>
+  [...document.querySelectorAll("figure[data-law]")].filter((f) => f.hidden).map((f) => f.id);
+found.hidden = hidden();
+law.value = "gms"; law.dispatchEvent(new Event("change")); found.hiddenThen = hidden();
+found.laws = [...document.querySelectorAll("select.law")].map((select) => select.value);
+found.partThen = document.getElementById("told").textContent.split(",")[0];
+choice.value = 1; choice.dispatchEvent(new Event("change"));
+press("Home"); found.pressed = Number(stage.dataset.gap); found.touches = words();
+press("End"); found.gap = Number(stage.dataset.gap); found.apart = words();
+seek.value = 600; seek.dispatchEvent(new Event("input")); found.pushes = words();
+law.value = "lugre"; law.dispatchEvent(new Event("change"));
+found.told = document.getElementById("told").textContent;
 seek.value = 500; seek.dispatchEvent(new Event("input")); found.middle = time();
 press(" "); found.playing = document.getElementById("play").getAttribute("aria-pressed");
 found.calm = !document.getElementById("calm").hidden;
@@ -254,6 +296,16 @@ def test_keys_slider_and_choice_work(page, tmp_path):
     assert (told["whole"], told["wholeEnd"], told["middle"]) == (0.0, 2.0, 1.0)
     assert str(told["told"]).startswith("Part no. 1, 1 kg, breaks loose at 500 N; jumps 15 mm")
     assert (told["playing"], told["calm"]) == ("true", False)
+    assert told["hidden"] == ["course_1_gms", "course_2_gms"]
+    assert told["hiddenThen"] == ["course_1_lugre", "course_2_lugre"]
+    assert (told["laws"], told["partThen"]) == (["gms", "gms"], "Part no. 1")
+    axis = "drive 349 µm ahead of the tool, stack 50.0 µm longer."
+    assert told["pressed"] == pytest.approx(-1.0)
+    assert str(told["touches"]).endswith(f"; tip touches, {axis}")
+    assert "force 480 N" in str(told["pushes"]) and "; tip pushes, " in str(told["pushes"])
+    assert told["gap"] == pytest.approx(20.0)
+    axis = "drive 370 µm ahead of the tool, stack 50.0 µm longer."
+    assert str(told["apart"]).endswith(f"; tip 20.0 µm apart, {axis}")
 
 
 STEPS = """

@@ -157,8 +157,9 @@ def test_save_and_load(paper, vibrating, tmp_path):
 
 
 def test_saving_where_it_can_not_be(paper, tmp_path):
+    (tmp_path / "file").write_text("")
     with pytest.raises(bk.OutputError, match="can not be written"):
-        bk.save_scenario(paper, tmp_path / "no_such_folder" / "scenario.toml")
+        bk.save_scenario(paper, tmp_path / "file" / "scenario.toml")
 
 
 def test_loading_what_is_not_there(tmp_path):

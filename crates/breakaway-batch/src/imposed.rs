@@ -1,7 +1,8 @@
 //! A joint whose motion is imposed, as on a friction test rig.
 
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::Joint;
-use breakaway_core::plant::{PlantState, impose_motion};
+use breakaway_core::plant::PlantState;
 
 /// What an imposed motion gave, one value for each step.
 #[derive(Clone, Debug, Default)]

@@ -3,6 +3,7 @@
 use breakaway_batch::{
     Instructions, Kept, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
 };
+use breakaway_core::Maybe;
 use breakaway_core::control::{AntiWindup, Cascade, DerivativeOf, Gains, Pid, VelocityFrom};
 use breakaway_core::rig::{Drive, LimitedPid, RIG_NUMBERS, Rig, Row};
 
@@ -22,7 +23,7 @@ const DRIVES: [Drive<f64>; 4] = [
             gains: Gains { kp_n_per_m: 40_000.0, ki_n_per_m_s: 2e5, kd_n_s_per_m: 400.0 },
             derivative_of: DerivativeOf::Error,
             velocity_from: VelocityFrom::PositionDifference,
-            derivative_filter_s: Some(2e-3),
+            derivative_filter_s: Maybe::some(2e-3),
             anti_windup: AntiWindup::BackCalculation,
             tracking_time_s: 0.05,
         },

@@ -13,11 +13,12 @@
 //!
 //! # Example
 //! ```
+//! use breakaway_core::Maybe;
 //! use breakaway_core::joint::{Joint, Lugre};
 //! let joint = Joint::Lugre(Lugre {
 //!     stiction_n: 450.0, coulomb_n: 360.0, stiffness_n_per_m: 3.6e7, damping_n_s_per_m: 9000.0,
-//!     viscous_n_s_per_m: None, stribeck_velocity_m_per_s: 0.09, engagement_length_m: 0.1,
-//!     residual_n: 9.81, damping_velocity_m_per_s: None, backward_ratio: None,
+//!     viscous_n_s_per_m: Maybe::none(), stribeck_velocity_m_per_s: 0.09, engagement_length_m: 0.1,
+//!     residual_n: 9.81, damping_velocity_m_per_s: Maybe::none(), backward_ratio: Maybe::none(),
 //! });
 //! // Halfway out, half of the contact area is left: equation (5).
 //! assert!((joint.breakaway_force(0.05) - (450.0 + 9.81) / 2.0_f64).abs() < 1e-12);
@@ -37,9 +38,12 @@ pub mod control;
 pub mod disturbance;
 pub mod dual;
 pub mod extraction;
+pub mod imposed;
 pub mod joint;
+mod maybe;
 pub mod metrics;
 pub mod name;
+pub mod period;
 pub mod plant;
 pub mod real;
 pub mod reference;
@@ -50,6 +54,7 @@ pub mod test_models;
 pub use disturbance::Draws;
 pub use dual::Dual;
 pub use extraction::{Extraction, ExtractionState};
+pub use maybe::Maybe;
 pub use metrics::{Metrics, Outcome};
 pub use name::Name;
 pub use real::Real;

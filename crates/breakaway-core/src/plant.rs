@@ -2,6 +2,7 @@
 
 use crate::disturbance::Factors;
 use crate::joint::{At, Bristle, ElementState, Elements, Frozen, JointState, Law, Rigid};
+use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
@@ -53,7 +54,7 @@ impl<R: Real> PlantState<R> {
     }
 
     #[inline(always)]
-    fn joint(&self) -> JointState<R> {
+    pub(crate) fn joint(&self) -> JointState<R> {
         JointState { bristle_m: self.bristle_m, sliding: self.sliding }
     }
 }
@@ -83,14 +84,14 @@ pub struct Push<R> {
     /// F_0 in N.
     pub force_n: R,
     /// S in N s/m; none for a rigid push.
-    pub yielding_n_s_per_m: Option<R>,
+    pub yielding_n_s_per_m: Maybe<R>,
 }
 
 impl<R: Real> Push<R> {
     /// The same force whatever the part does.
     #[inline(always)]
     pub fn rigid(force_n: R) -> Self {
-        Self { force_n, yielding_n_s_per_m: None }
+        Self { force_n, yielding_n_s_per_m: Maybe::none() }
     }
 
     /// F in N on a part whose middle velocity is v_free + Y F:
@@ -102,8 +103,8 @@ impl<R: Real> Push<R> {
     /// This is the one F that agrees with both, since F_0 − S v_m falls with F.
     #[inline(always)]
     fn meets(&self, free_m_per_s: R, mobility_m_per_n_s: R) -> R {
-        match self.yielding_n_s_per_m {
-            Some(s) => {
+        match self.yielding_n_s_per_m.get() {
+            Some(&s) => {
                 let stopped = s.mul_add(mobility_m_per_n_s, R::one()).named("stopped");
                 let met_n = (-s).mul_add(free_m_per_s, self.force_n) / stopped;
                 R::zero().max(met_n.named("met_n")).named("contact_n")
@@ -187,7 +188,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let k_over_m = (k / self.mass_kg).named("k_over_m_s_per_kg");
         let x_mid = k.mul_add(v, state.position_m).named("middle_m");
         let q = (k_over_m * self.factors.joint_force).named("q_s_per_kg");
-        let v_predicted = match self.push.yielding_n_s_per_m {
+        let v_predicted = match self.push.yielding_n_s_per_m.get() {
             Some(_) => {
                 let unpushed = (-q).mul_add(state.joint_force_n, v);
                 k_over_m.mul_add(self.push.meets(unpushed, k_over_m), unpushed)
@@ -239,8 +240,8 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let g = b.friction_level_n;
         let c_over_k = (b.damping_n_s_per_m / k).named("damping_n_per_m");
         let k_e = b.stiffness_n_per_m;
-        let viscous = match b.viscous_n_s_per_m {
-            Some(sigma) => q.mul_add(sigma, R::one()).named("viscous"), // 1 + q σ, divided out below
+        let viscous = match b.viscous_n_s_per_m.get() {
+            Some(&sigma) => q.mul_add(sigma, R::one()).named("viscous"), // 1 + q σ, divided out below
             None => R::one(),
         };
         let stiff = (k_e + c_over_k).named("stiff_n_per_m");
@@ -248,7 +249,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let slip = (k * b.relaxation_n_per_m * b.speed_m_per_s).named("slip_n"); // k A
         let den = g.mul_add(per_level, slip).named("den_n");
         let two_over_den = (R::constant(2.0) / viscous / den).named("two_over_den_per_n");
-        let force_n = match self.push.yielding_n_s_per_m {
+        let force_n = match self.push.yielding_n_s_per_m.get() {
             Some(_) => {
                 let half = R::constant(0.5) * two_over_den;
                 let free = g.mul_add((q * k_e).mul_add(-z, v), slip * (q * c_over_k).mul_add(z, v));
@@ -270,8 +271,8 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let per_force = (R::one() / stiff).named("per_force_m_per_n");
         let kept_share = (per_force * c_over_k).mul_add(R::constant(2.0), -R::one());
         let kept = kept_share.named("kept_share") * z;
-        let kept = match b.viscous_n_s_per_m {
-            Some(sigma) => (-(per_force * sigma)).mul_add(two_v, kept),
+        let kept = match b.viscous_n_s_per_m.get() {
+            Some(&sigma) => (-(per_force * sigma)).mul_add(two_v, kept),
             None => kept,
         };
         let per_force = (per_force * R::constant(2.0)).named("two_per_force_m_per_n");
@@ -385,7 +386,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let engaged = self.engaged(x);
         let joint_force = R::select(engaged, force, R::zero());
         let z_rate = R::select(engaged, z_rate, R::zero());
-        let push = match self.push.yielding_n_s_per_m {
+        let push = match self.push.yielding_n_s_per_m.get() {
             Some(_) => R::constant(f64::NAN),
             None => self.push.force_n,
         };
@@ -442,78 +443,5 @@ impl<R: Real, L: Law<R>> Frozen<R> for Step<'_, '_, R, L> {
     #[inline(always)]
     fn rigid(self, rigid: &Rigid<R>) -> Moved<R> {
         self.plant.step_rigid(self.state, &self.middle, rigid)
-    }
-}
-
-/// A step of `h` seconds with the motion imposed instead of the force, as on a test rig: velocity
-/// `v` in m/s over the step. Gives the joint force in N at the middle of the step, undisturbed.
-///
-/// ```text
-/// z_m = (z + k α v) / (1 + k A / g),   k = h / 2
-/// ```
-///
-/// The midpoint rule again, second order and stable for any step. The velocity of `state` is set
-/// to `v`. Beyond the end of the guide the force is zero. A rigid joint that does not move holds
-/// what it held, at most its level.
-#[inline(always)]
-pub fn impose_motion<R: Real>(joint: &impl Law<R>, state: &mut PlantState<R>, v: R, h: R) -> R {
-    let (zero, one) = (R::zero(), R::one());
-    let settled = joint.settle(state.joint(), state.position_m, v, one);
-    (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
-    let k = R::constant(0.5) * h;
-    let x_mid = k.mul_add(v, state.position_m);
-    let engaged = x_mid.lt(joint.engagement_length_m());
-    let at = At { position_m: x_mid, velocity_m_per_s: v, level_factor: one, ahead_s: k };
-    let force = joint.frozen(&settled, &at, Imposed { state, v, k, engaged });
-    let force = R::select(engaged, force, zero);
-    state.bristle_m = R::select(engaged, state.bristle_m, zero);
-    state.position_m = h.mul_add(v, state.position_m);
-    state.velocity_m_per_s = v;
-    state.joint_force_n = force;
-    force
-}
-
-/// Half a step of k seconds at an imposed velocity v; gives the joint force in N.
-struct Imposed<'a, R: Real> {
-    state: &'a mut PlantState<R>,
-    v: R,
-    k: R,
-    engaged: R::Mask,
-}
-
-impl<R: Real> Frozen<R> for Imposed<'_, R> {
-    type Output = R;
-
-    #[inline(always)]
-    fn bristle(self, b: &Bristle<R>) -> R {
-        let Self { state, v, k, .. } = self;
-        let relaxed = R::one() + k * b.relaxation() / b.friction_level_n;
-        let z_mid = (k * b.stretch).mul_add(v, state.bristle_m) / relaxed;
-        state.bristle_m = R::constant(2.0) * z_mid - state.bristle_m;
-        b.force(v, z_mid, b.rate(v, z_mid))
-    }
-
-    #[inline(always)]
-    fn elements(self, elements: &Elements<'_, R>) -> R {
-        let Self { state, v, k, engaged } = self;
-        let mut moving = state.elements;
-        let ahead = elements.ahead(&mut moving, k);
-        state.bristle_m = elements.finish(&ahead, &mut moving, v, engaged);
-        state.elements = moving;
-        ahead.resistance_n_s_per_m.mul_add(v, ahead.force_at_rest_n)
-    }
-
-    #[inline(always)]
-    fn rigid(self, rigid: &Rigid<R>) -> R {
-        let Self { state, v, .. } = self;
-        let zero = R::zero();
-        let held = state.joint_force_n.min(rigid.level_n).max(-rigid.backward_level_n);
-        let backward = R::select(v.lt(zero), -rigid.backward_level_n, held);
-        let friction = R::select(zero.lt(v), rigid.level_n, backward);
-        state.sliding = R::flag(v.lt(zero) | zero.lt(v));
-        match rigid.viscous_n_s_per_m {
-            Some(sigma) => sigma.mul_add(v, friction),
-            None => friction,
-        }
     }
 }

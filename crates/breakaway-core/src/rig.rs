@@ -4,6 +4,7 @@ use crate::actuator::ForceRange;
 use crate::control::{Cascade, CascadeState, DerivativeOf, Measurement, Pid, PidState};
 use crate::disturbance::Factors;
 use crate::joint::{DirectionalLugre, JointState};
+use crate::maybe::Maybe;
 use crate::plant::{Integrator, Plant, PlantState, Push};
 use crate::real::Real;
 
@@ -160,7 +161,11 @@ impl<R: Real> Rig<R> {
                 stiffness_n_per_m: numbers[8],
                 damping_n_s_per_m: numbers[9],
                 coulomb_slope_n_per_m: numbers[10],
-                elastic_share: if elasto_plastic { Some(numbers[11]) } else { None },
+                elastic_share: if elasto_plastic {
+                    Maybe::some(numbers[11])
+                } else {
+                    Maybe::none()
+                },
             },
             offset_n: numbers[12],
         }

@@ -1,5 +1,6 @@
 //! What a controller gets to see of position and force.
 
+use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::real::Real;
 
@@ -20,9 +21,9 @@ pub struct Sensor<R> {
     /// σ, in the unit of what is measured.
     pub noise_rms: R,
     /// q, in that unit, if it is quantized.
-    pub quantum: Option<R>,
+    pub quantum: Maybe<R>,
     /// f in Hz, if it is slower than the sampling.
-    pub bandwidth_hz: Option<R>,
+    pub bandwidth_hz: Maybe<R>,
     /// How many samples late it is, at most [`DELAY_MAX`].
     pub delay_samples: u32,
 }
@@ -53,7 +54,7 @@ impl<R: Real> SensorState<R> {
 
 impl<R: Real> Sensor<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensor<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensor<S> {
         Sensor {
             noise_rms: f(Name::of("noise_rms"), self.noise_rms),
             quantum: self.quantum.map(|q| f(Name::of("quantum"), q)),
@@ -66,8 +67,8 @@ impl<R: Real> Sensor<R> {
     #[inline(always)]
     pub fn read(&self, state: &mut SensorState<R>, value: R, w: R, period_s: R) -> R {
         R::section("sensor: s = q round((y + sigma w) / q), y low-passed");
-        let seen = match self.bandwidth_hz {
-            Some(hertz) => {
+        let seen = match self.bandwidth_hz.get() {
+            Some(&hertz) => {
                 let per_s = R::constant(-2.0 * core::f64::consts::PI) * hertz;
                 let share = (R::one() - (per_s * period_s).exp()).named("bandwidth_share");
                 let filtered = share.mul_add(value - state.filtered, state.filtered);
@@ -77,8 +78,8 @@ impl<R: Real> Sensor<R> {
             None => value,
         };
         let noisy = self.noise_rms.mul_add(w, seen).named("noisy");
-        let shown = match self.quantum {
-            Some(q) => q * (noisy / q).round(),
+        let shown = match self.quantum.get() {
+            Some(&q) => q * (noisy / q).round(),
             None => noisy,
         };
         self.delayed(state, shown)
@@ -111,7 +112,7 @@ pub struct Sensors<R> {
 
 impl<R: Real> Sensors<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensors<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Sensors<S> {
         Sensors {
             position: within!("position", self.position, f),
             force: within!("force", self.force, f),

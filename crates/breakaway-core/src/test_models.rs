@@ -5,6 +5,7 @@ use crate::control::{AntiWindup, Controller, DerivativeOf, Gains, Pid, VelocityF
 use crate::disturbance::{Disturbance, DisturbedQuantity, DrawLaw};
 use crate::extraction::{Extraction, Part, Timing};
 use crate::joint::{Joint, Lugre};
+use crate::maybe::Maybe;
 use crate::metrics::Limits;
 use crate::plant::Integrator;
 use crate::reference::{Motion, Reference};
@@ -18,12 +19,12 @@ pub fn paper_joint() -> Lugre<f64> {
         coulomb_n: 360.0,
         stiffness_n_per_m: 3.6e7,
         damping_n_s_per_m: 9000.0,
-        viscous_n_s_per_m: None,
+        viscous_n_s_per_m: Maybe::none(),
         stribeck_velocity_m_per_s: 0.09,
         engagement_length_m: 0.1,
         residual_n: 9.81,
-        damping_velocity_m_per_s: None,
-        backward_ratio: None,
+        damping_velocity_m_per_s: Maybe::none(),
+        backward_ratio: Maybe::none(),
     }
 }
 
@@ -61,7 +62,7 @@ pub fn paper_as_computed() -> Extraction<f64> {
             },
             derivative_of: DerivativeOf::Error,
             velocity_from: VelocityFrom::Sensor,
-            derivative_filter_s: None,
+            derivative_filter_s: Maybe::none(),
             anti_windup: AntiWindup::Off,
             tracking_time_s: 1e-3,
         }),

@@ -13,7 +13,7 @@ use breakaway_core::extraction::Sample;
 use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::plant::{Integrator, Moved, Plant, PlantState};
 use breakaway_core::test_models::{paper_as_computed, paper_joint};
-use breakaway_core::{Draws, Extraction, ExtractionState};
+use breakaway_core::{Draws, Extraction, ExtractionState, Maybe};
 use std::f64::consts::PI;
 use support::{UNDISTURBED, random};
 
@@ -75,7 +75,7 @@ impl Bench {
     /// The part can not move: gives the force on it, and the effort.
     fn hold(&mut self, command: &Command<f64>, h: f64) -> (f64, Effort<f64>) {
         let driven = self.actuator.drive(&mut self.state, command, self.part.position_m, h);
-        let push = match driven.push.yielding_n_s_per_m {
+        let push = match driven.push.yielding_n_s_per_m.get() {
             Some(_) => driven.push.force_n.max(0.0),
             None => driven.push.force_n,
         };
@@ -479,7 +479,7 @@ fn a_chain_moves_as_explicit_integration_says() {
 /// damper at mid-step, never below zero, and the momentum of each mass agrees with its forces.
 #[test]
 fn a_contact_never_pulls_and_momentum_is_kept() {
-    let law = Lugre { viscous_n_s_per_m: Some(60.0), ..paper_joint() };
+    let law = Lugre { viscous_n_s_per_m: Maybe::some(60.0), ..paper_joint() };
     for (name, joint) in laws::all(law) {
         let mut bench = Bench::new(Actuator::FeedAxis(with_stack(STACK)), joint);
         bench.part.position_m = 0.01;

@@ -3,8 +3,10 @@
 mod laws;
 mod support;
 
+use breakaway_core::Maybe;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::Lugre;
-use breakaway_core::plant::{PlantState, impose_motion};
+use breakaway_core::plant::PlantState;
 use support::Rig;
 
 /// What backward levels are multiplied by.
@@ -13,7 +15,8 @@ const RATIO: f64 = 0.6;
 /// Sliding at a speed at which the Stribeck curve has fallen to F_c, joints carry ± their level.
 #[test]
 fn sliding_backward_they_carry_a_multiple() {
-    for (name, joint) in laws::all(Lugre { backward_ratio: Some(RATIO), ..laws::endless() }) {
+    for (name, joint) in laws::all(Lugre { backward_ratio: Maybe::some(RATIO), ..laws::endless() })
+    {
         for (v, level) in [(0.5, 360.0), (-0.5, -360.0 * RATIO)] {
             let mut state = PlantState::at_rest();
             let force = (0..10_000).fold(0.0, |_, _| impose_motion(&joint, &mut state, v, 1e-6));
@@ -26,7 +29,8 @@ fn sliding_backward_they_carry_a_multiple() {
 /// Held at 97 % of the level of the direction they stay, at 103 % they go.
 #[test]
 fn they_break_loose_at_the_level_of_the_direction() {
-    for (name, joint) in laws::all(Lugre { backward_ratio: Some(RATIO), ..laws::endless() }) {
+    for (name, joint) in laws::all(Lugre { backward_ratio: Maybe::some(RATIO), ..laws::endless() })
+    {
         for breakaway_n in [450.0, -450.0 * RATIO] {
             let speed = |share: f64| {
                 let mut rig = Rig::at(joint, 0.0);
@@ -45,7 +49,7 @@ fn they_break_loose_at_the_level_of_the_direction() {
 #[test]
 fn a_ratio_of_one_changes_nothing() {
     let law = laws::endless();
-    let twins = laws::all(Lugre { backward_ratio: Some(1.0), ..law });
+    let twins = laws::all(Lugre { backward_ratio: Maybe::some(1.0), ..law });
     for ((name, plain), (_, ratio)) in laws::all(law).into_iter().zip(twins) {
         let [plain, ratio] = [plain, ratio].map(|joint| {
             let mut rig = Rig::at(joint, 0.0);

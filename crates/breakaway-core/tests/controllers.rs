@@ -14,7 +14,7 @@ use breakaway_core::metrics::{Groups, Metrics};
 use breakaway_core::reference::{Reference, Step};
 use breakaway_core::sensor::{Noise, Sensor, Sensors};
 use breakaway_core::test_models::{paper_as_computed, paper_joint, paper_limits};
-use breakaway_core::{Draws, Extraction, ExtractionState};
+use breakaway_core::{Draws, Extraction, ExtractionState, Maybe};
 use support::random;
 
 mod laws;
@@ -25,7 +25,7 @@ const PID: Pid<f64> = Pid {
     gains: GAINS,
     derivative_of: DerivativeOf::Error,
     velocity_from: VelocityFrom::PositionDifference,
-    derivative_filter_s: Some(1e-4),
+    derivative_filter_s: Maybe::some(1e-4),
     anti_windup: AntiWindup::Conditional,
     tracking_time_s: 1e-3,
 };
@@ -92,7 +92,7 @@ const RANGE: ForceRange<f64> = ForceRange { min_n: 0.0, max_n: 2000.0 };
 fn every_kind() -> Vec<(&'static str, Controller<f64>)> {
     let back = Pid { anti_windup: AntiWindup::BackCalculation, ..PID };
     let vibration = FmVibration { shape: PulseShape::Rectangular, ..PULSES };
-    let slow = Pid { derivative_filter_s: Some(1e-3), ..back };
+    let slow = Pid { derivative_filter_s: Maybe::some(1e-3), ..back };
     let two_step = |breakaway, vibration| {
         Controller::TwoStep(TwoStep { breakaway, vibration, breakaway_travel_m: 2.5e-5 })
     };
@@ -219,7 +219,12 @@ fn nothing_pushes_a_part_that_is_out() {
 /// and none once the watch has stopped it.
 #[test]
 fn a_watch_stops_every_kind() {
-    let sensor = Sensor { noise_rms: 1.0, quantum: None, bandwidth_hz: None, delay_samples: 0 };
+    let sensor = Sensor {
+        noise_rms: 1.0,
+        quantum: Maybe::none(),
+        bandwidth_hz: Maybe::none(),
+        delay_samples: 0,
+    };
     let lag = ForceActuator { force_max_n: 2000.0, bandwidth_hz: 1e3, force_rate_max_n_per_s: 1e8 };
     let wrongs = [f64::NAN, f64::INFINITY, 0.02, -0.02];
     for (name, controller) in every_kind() {
@@ -267,15 +272,17 @@ const AXIS: FeedAxis<f64> = FeedAxis {
 };
 
 /// Rigid friction: F_s 450 N, F_c 360 N at the seat, 10 N at the end after 5 mm.
-const RIGID: CoulombStiction<f64> = CoulombStiction {
-    stiction_n: 450.0,
-    coulomb_n: 360.0,
-    viscous_n_s_per_m: None,
-    stribeck_velocity_m_per_s: 0.09,
-    engagement_length_m: 5e-3,
-    residual_n: 10.0,
-    backward_ratio: None,
-};
+fn rigid() -> CoulombStiction<f64> {
+    CoulombStiction {
+        stiction_n: 450.0,
+        coulomb_n: 360.0,
+        viscous_n_s_per_m: Maybe::none(),
+        stribeck_velocity_m_per_s: 0.09,
+        engagement_length_m: 5e-3,
+        residual_n: 10.0,
+        backward_ratio: Maybe::none(),
+    }
+}
 
 const PUSH_ONLY: Actuator<f64> = Actuator::PushOnly(PushOnly { force_max_n: 2000.0 });
 
@@ -306,14 +313,14 @@ fn until(extraction: &Extraction<f64>, done: impl Fn(&Sample<f64>) -> bool) -> V
 #[test]
 fn a_force_ramp_breaks_a_rigid_joint_loose_at_its_stiction() {
     let ramp = Controller::ForceRamp(ForceRamp { rate_n_per_s: 5e3, travel_m: 5e-3 });
-    let samples = until(&calm(RIGID, PUSH_ONLY, ramp), |s| s.next_position_m > 0.0);
+    let samples = until(&calm(rigid(), PUSH_ONLY, ramp), |s| s.next_position_m > 0.0);
     let last = samples.last().expect("there is one");
     // 0.05 N in each sample: 9000 of them are 450 N, and rounding decides whether that holds.
     let force = last.applied_force_n;
     assert!(force > 450.0 && force < 450.05 + 1e-6, "{force}");
     assert!((last.time_s - 0.09).abs() < 1.5e-5, "{}", last.time_s);
     // It goes on growing until the part is out, then ends.
-    let out = until(&calm(RIGID, PUSH_ONLY, ramp), |s| s.position_m >= 5e-3);
+    let out = until(&calm(rigid(), PUSH_ONLY, ramp), |s| s.position_m >= 5e-3);
     let last = out.last().expect("there is one");
     assert_eq!(last.applied_force_n, 0.0);
     assert!(out[out.len() - 2].applied_force_n > 450.0);
@@ -330,7 +337,7 @@ fn a_force_ramp_breaks_a_rigid_joint_loose_at_its_stiction() {
 /// its blow, v sqrt(m k_c) = 68 N, does not break the joint loose before the axis presses.
 #[test]
 fn a_steady_feed_is_out_when_its_travel_says() {
-    let even = CoulombStiction { coulomb_n: 450.0, ..RIGID };
+    let even = CoulombStiction { coulomb_n: 450.0, ..rigid() };
     let steady = Controller::SteadyFeed(FEED);
     let extraction = calm(even, Actuator::FeedAxis(AXIS), steady);
     let samples = until(&extraction, |s| s.next_position_m >= 5e-3);
@@ -353,7 +360,7 @@ fn a_steady_feed_is_out_when_its_travel_says() {
 /// factor above 450 N.
 #[test]
 fn timed_impacts_break_a_rigid_joint_loose_within_a_step_of_their_exponential() {
-    let extraction = calm(RIGID, PUSH_ONLY, Controller::TimedImpacts(IMPACTS));
+    let extraction = calm(rigid(), PUSH_ONLY, Controller::TimedImpacts(IMPACTS));
     let samples = until(&extraction, |s| s.next_position_m > 0.0);
     let factor: f64 = 1.0 + 1e-5 / 15e-3;
     let expected = (15.0_f64.ln() / factor.ln()).ceil();
@@ -412,7 +419,7 @@ fn an_integral_breaks_a_rigid_joint_loose_on_time_and_two_steps_then_vibrate() {
     for controller in [Controller::Pid(pid), Controller::TwoStep(two_step)] {
         let extraction = Extraction {
             reference: Reference::Step(Step { distance_m: 1e-3, start_s: 0.0 }),
-            ..calm(RIGID, PUSH_ONLY, controller)
+            ..calm(rigid(), PUSH_ONLY, controller)
         };
         let samples = until(&extraction, |s| s.position_m > 1e-4);
         let moved = samples.iter().position(|s| s.next_position_m > 0.0).expect("it moves");
@@ -422,7 +429,7 @@ fn an_integral_breaks_a_rigid_joint_loose_on_time_and_two_steps_then_vibrate() {
     }
     let extraction = Extraction {
         reference: Reference::Step(Step { distance_m: 1e-3, start_s: 0.0 }),
-        ..calm(RIGID, PUSH_ONLY, Controller::TwoStep(two_step))
+        ..calm(rigid(), PUSH_ONLY, Controller::TwoStep(two_step))
     };
     let samples = until(&extraction, |s| s.time_s > 0.2);
     let loose = samples.iter().position(|s| s.position_m > 1e-5).expect("it slips");
@@ -442,7 +449,7 @@ fn a_vibration_takes_the_amplitude_over_without_a_bump() {
     let second = Pid {
         gains,
         derivative_of: DerivativeOf::Measurement,
-        derivative_filter_s: Some(3e-4),
+        derivative_filter_s: Maybe::some(3e-4),
         ..first
     };
     let pulses = FmVibration { base_fraction: 1.0, ..PULSES };
@@ -516,7 +523,7 @@ fn a_force_ramp_and_then_timed_impacts_free_a_rigid_joint() {
     let mut limits = paper_limits();
     (limits.release_position_m, limits.diverged_error_m) = (5e-3, 1.0);
     let freed = |controller| {
-        let extraction = calm(RIGID, PUSH_ONLY, controller);
+        let extraction = calm(rigid(), PUSH_ONLY, controller);
         let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
         for _ in 0..200_000 {
             metrics.update(Groups::ALL, &limits, &extraction.step(&mut state, Draws::none()));
@@ -539,7 +546,7 @@ fn frequency_modulation_has_its_pulses_and_their_height() {
         let controller = Controller::FmVibration(VibratingPid { pid, vibration });
         let extraction = Extraction {
             reference: Reference::Step(Step { distance_m: error_m, start_s: 0.0 }),
-            ..calm(RIGID, PUSH_ONLY, controller)
+            ..calm(rigid(), PUSH_ONLY, controller)
         };
         let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
         let mut limits = paper_limits();

@@ -3,6 +3,7 @@
 mod laws;
 mod support;
 
+use breakaway_core::Maybe;
 use breakaway_core::disturbance::Factors;
 use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::plant::Integrator;
@@ -18,7 +19,7 @@ const FACTORS: Factors<f64> = Factors { joint_force: 1.1, friction_level: 0.9 };
 /// x, v and z after sliding under a force that is taken at the middle of each step. No term of the
 /// equations is zero, so that one missing in the closed form would spoil the order.
 fn slide(integrator: Integrator, force: impl Fn(f64) -> f64, steps: u32) -> [f64; 3] {
-    let law = Lugre { viscous_n_s_per_m: Some(60.0), ..paper_joint() };
+    let law = Lugre { viscous_n_s_per_m: Maybe::some(60.0), ..paper_joint() };
     let mut rig = Rig { integrator, ..Rig::at(Joint::Lugre(law), 0.01) };
     let h = TIME_S / f64::from(steps);
     rig.state.velocity_m_per_s = 0.2;
@@ -67,9 +68,9 @@ fn runge_kutta_is_of_order_four() {
 /// Every option in use.
 fn options() -> Lugre<f64> {
     Lugre {
-        viscous_n_s_per_m: Some(60.0),
-        damping_velocity_m_per_s: Some(0.2),
-        backward_ratio: Some(0.8),
+        viscous_n_s_per_m: Maybe::some(60.0),
+        damping_velocity_m_per_s: Maybe::some(0.2),
+        backward_ratio: Maybe::some(0.8),
         ..paper_joint()
     }
 }

@@ -3,8 +3,10 @@
 mod laws;
 mod support;
 
+use breakaway_core::Maybe;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::Lugre;
-use breakaway_core::plant::{PlantState, impose_motion};
+use breakaway_core::plant::PlantState;
 use breakaway_core::test_models::paper_joint;
 use support::Rig;
 
@@ -78,7 +80,7 @@ fn it_turns_under_a_force_beyond_its_level() {
 /// Moved as on a rig it shows ± g(v) + σ v; at a halt it holds what it held.
 #[test]
 fn imposed_motion_shows_its_level() {
-    let law = Lugre { viscous_n_s_per_m: Some(60.0), ..laws::endless() };
+    let law = Lugre { viscous_n_s_per_m: Maybe::some(60.0), ..laws::endless() };
     let (joint, mut state) = (laws::coulomb_stiction(law), PlantState::at_rest());
     assert_eq!(impose_motion(&joint, &mut state, 0.0, 1e-3), 0.0);
     for v in [0.01, -0.2, 0.05] {

@@ -2,14 +2,16 @@
 
 use std::f64::consts::PI;
 
+use breakaway_core::Maybe;
 use breakaway_core::disturbance::Factors;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::{Bristle, DirectionalLugre, Joint, JointState, Law, Lugre};
-use breakaway_core::plant::{Integrator, Plant, PlantState, Push, impose_motion};
+use breakaway_core::plant::{Integrator, Plant, PlantState, Push};
 
 const UNDISTURBED: Factors<f64> = Factors { joint_force: 1.0, friction_level: 1.0 };
 
 /// Without damper or viscous friction: what the bristle alone carries.
-fn bare(elastic_share: Option<f64>) -> DirectionalLugre<f64> {
+fn bare(elastic_share: Maybe<f64>) -> DirectionalLugre<f64> {
     DirectionalLugre {
         coulomb_positive_n: 20.0,
         coulomb_negative_n: 30.0,
@@ -24,7 +26,7 @@ fn bare(elastic_share: Option<f64>) -> DirectionalLugre<f64> {
     }
 }
 
-fn whole(elastic_share: Option<f64>) -> DirectionalLugre<f64> {
+fn whole(elastic_share: Maybe<f64>) -> DirectionalLugre<f64> {
     DirectionalLugre {
         viscous_positive_n_s_per_m: 40.0,
         viscous_negative_n_s_per_m: 60.0,
@@ -33,7 +35,9 @@ fn whole(elastic_share: Option<f64>) -> DirectionalLugre<f64> {
     }
 }
 
-const ONSETS: [Option<f64>; 3] = [None, Some(0.0), Some(0.7)];
+fn onsets() -> [Maybe<f64>; 3] {
+    [Maybe::none(), Maybe::some(0.0), Maybe::some(0.7)]
+}
 
 /// Moves a relaxed joint along positions from 0 on, one every `h` seconds; gives travel and force.
 fn moved(law: &DirectionalLugre<f64>, path: &[f64], h: f64) -> Vec<(f64, f64)> {
@@ -71,19 +75,19 @@ fn twins() -> (DirectionalLugre<f64>, Joint<f64>) {
     let by_direction = DirectionalLugre {
         coulomb_negative_n: 20.0,
         viscous_negative_n_s_per_m: 40.0,
-        ..whole(None)
+        ..whole(Maybe::none())
     };
     let joint = Joint::Lugre(Lugre {
         stiction_n: 26.0,
         coulomb_n: 20.0,
         stiffness_n_per_m: 1e6,
         damping_n_s_per_m: 300.0,
-        viscous_n_s_per_m: Some(40.0),
+        viscous_n_s_per_m: Maybe::some(40.0),
         stribeck_velocity_m_per_s: 0.01,
         engagement_length_m: 1e12,
         residual_n: 0.0,
-        damping_velocity_m_per_s: None,
-        backward_ratio: None,
+        damping_velocity_m_per_s: Maybe::none(),
+        backward_ratio: Maybe::none(),
     });
     (by_direction, joint)
 }
@@ -133,7 +137,7 @@ fn with_equal_directions_it_moves_as_lugre() {
 /// R = ± g + σ v with the levels and the viscous friction of the direction, whatever the onset.
 #[test]
 fn sliding_steadily_it_carries_level_and_viscous_friction_of_its_direction() {
-    for onset in ONSETS {
+    for onset in onsets() {
         for speed in [1e-3, 0.01, 0.03, 0.3] {
             let stribeck = 1.0 + 0.3 * (-(speed / 0.01_f64).powi(2)).exp();
             for (v, level, viscous) in [(speed, 20.0, 40.0), (-speed, -30.0, 60.0)] {
@@ -152,7 +156,7 @@ fn sliding_steadily_it_carries_level_and_viscous_friction_of_its_direction() {
 /// Pushed harder and harder it holds up to its breakaway force, which is that of the direction.
 #[test]
 fn it_breaks_loose_at_the_level_of_its_direction() {
-    for onset in ONSETS {
+    for onset in onsets() {
         for (sign, level) in [(1.0, 26.0), (-1.0, 39.0)] {
             let states = pushed(&whole(onset), |t| sign * 10.0 * t, 1e-3, 5000);
             let loose = states.iter().position(|s| s.velocity_m_per_s.abs() > 2e-3);
@@ -165,7 +169,7 @@ fn it_breaks_loose_at_the_level_of_its_direction() {
 /// The level is a line over position; the bristles follow it within what they yield, 20 um.
 #[test]
 fn the_level_falls_as_the_contact_slope() {
-    for onset in ONSETS {
+    for onset in onsets() {
         let law =
             DirectionalLugre { stiction_ratio: 1.0, coulomb_slope_n_per_m: -100.0, ..bare(onset) };
         for (sign, level) in [(1.0, 20.0), (-1.0, 30.0)] {
@@ -181,7 +185,7 @@ fn the_level_falls_as_the_contact_slope() {
 
 /// u = |z| k_e / g from which the onset is computed; α = S((u − e) / (1 − e)).
 fn onset(share: f64, used: f64, v: f64) -> f64 {
-    let law = bare(Some(share));
+    let law = bare(Maybe::some(share));
     let g = law.level(0.0, v);
     let state = JointState { bristle_m: used * g / 1e6, sliding: 0.0 };
     law.freeze(&state, 0.0, v, 1.0).relaxation_n_per_m / 1e6
@@ -218,7 +222,7 @@ fn unloaded_bristles_do_not_slip() {
 /// From 20 N on: down to −e times the level of the way back nothing but the spring.
 #[test]
 fn turned_back_an_elastoplastic_bristle_is_a_spring() {
-    let law = DirectionalLugre { stiction_ratio: 1.0, ..bare(Some(0.7)) };
+    let law = DirectionalLugre { stiction_ratio: 1.0, ..bare(Maybe::some(0.7)) };
     let forth = (1..=3000).map(|n| 1e-6 * f64::from(n));
     let back = (1..=1000).map(|n| 3e-3 - 1e-7 * f64::from(n));
     let path: Vec<f64> = forth.chain(back).collect();
@@ -245,13 +249,18 @@ fn below_the_elastic_share_a_loop_encloses_nothing() {
         let moved = moved(&bare(onset), &cycles(amplitude, 10), 1e-5);
         moved.iter().map(work).sum::<f64>() / (0.5 * 1e6 * amplitude.powi(2))
     };
-    assert!(loss(Some(0.7)).abs() < 1e-12, "{:e}", loss(Some(0.7)));
-    assert!(loss(Some(0.6)) > 0.01 && loss(None) > 1.0, "{} {}", loss(Some(0.6)), loss(None));
+    assert!(loss(Maybe::some(0.7)).abs() < 1e-12, "{:e}", loss(Maybe::some(0.7)));
+    assert!(
+        loss(Maybe::some(0.6)) > 0.01 && loss(Maybe::none()) > 1.0,
+        "{} {}",
+        loss(Maybe::some(0.6)),
+        loss(Maybe::none())
+    );
 }
 
 #[test]
 fn no_loop_gives_work() {
-    for onset in ONSETS {
+    for onset in onsets() {
         for slope in [0.0, -2000.0, 2000.0] {
             let law = DirectionalLugre { coulomb_slope_n_per_m: slope, ..whole(onset) };
             let bristles = DirectionalLugre { coulomb_slope_n_per_m: slope, ..bare(onset) };
@@ -272,14 +281,14 @@ fn no_loop_gives_work() {
 /// dz = (1 + k_e z/g₋) dx; of each pulse remains −[g₊ ln(1 − F/g₊) + g₋ ln(1 + F/g₋)] / k_e.
 #[test]
 fn pulses_below_breakaway_make_lugre_drift_but_not_an_elastoplastic_bristle() {
-    let end = |onset: Option<f64>| {
+    let end = |onset: Maybe<f64>| {
         let force = |t: f64| if t < 100.0 { 5.0 * (1.0 - (20.0 * PI * t).cos()) } else { 0.0 };
         let states = pushed(&whole(onset), force, 1e-4, 1_001_000);
         states[1_000_999].position_m
     };
-    assert!(end(Some(0.7)).abs() < 1e-15, "{:e} m", end(Some(0.7)));
+    assert!(end(Maybe::some(0.7)).abs() < 1e-15, "{:e} m", end(Maybe::some(0.7)));
     let remains = |g: f64, force: f64| -g / 1e6 * (1.0 - force / g).ln();
     let pulse = remains(26.0, 10.0) + remains(39.0, -10.0);
-    let error = end(None) / (1000.0 * pulse) - 1.0;
+    let error = end(Maybe::none()) / (1000.0 * pulse) - 1.0;
     assert!(error.abs() < 0.02, "{pulse:e} m with every pulse, off by {error}");
 }

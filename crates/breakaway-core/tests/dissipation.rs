@@ -4,8 +4,10 @@
 mod laws;
 mod support;
 
+use breakaway_core::Maybe;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::{Joint, Lugre};
-use breakaway_core::plant::{PlantState, Push, impose_motion};
+use breakaway_core::plant::{PlantState, Push};
 use breakaway_core::test_models::paper_joint;
 use support::{Rig, random};
 
@@ -48,7 +50,7 @@ fn slow_motion_creates_no_energy_under_any_law() {
 #[test]
 fn damping_that_falls_with_speed_makes_lugre_passive() {
     let constant = laws::endless();
-    let falling = Lugre { damping_velocity_m_per_s: Some(0.3), ..constant };
+    let falling = Lugre { damping_velocity_m_per_s: Maybe::some(0.3), ..constant };
     for (name, wrap) in [
         ("lugre", Joint::Lugre as fn(Lugre<f64>) -> Joint<f64>),
         ("elasto_plastic", laws::elasto_plastic),
@@ -65,7 +67,8 @@ fn damping_that_falls_with_speed_makes_lugre_passive() {
 /// neither in motion nor in bristles was dissipated.
 #[test]
 fn work_is_motion_bristles_and_loss() {
-    for (name, joint) in laws::all(Lugre { viscous_n_s_per_m: Some(60.0), ..paper_joint() }) {
+    for (name, joint) in laws::all(Lugre { viscous_n_s_per_m: Maybe::some(60.0), ..paper_joint() })
+    {
         let mut rig = Rig::at(joint, 0.01);
         let (mut seed, mut force_n) = (3, 0.0);
         let (mut lost, mut least) = (0.0, f64::INFINITY);

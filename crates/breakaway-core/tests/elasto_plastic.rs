@@ -3,8 +3,10 @@
 mod laws;
 mod support;
 
+use breakaway_core::Maybe;
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::{Joint, Lugre};
-use breakaway_core::plant::{PlantState, impose_motion};
+use breakaway_core::plant::PlantState;
 use breakaway_core::test_models::paper_joint;
 use support::Rig;
 
@@ -29,7 +31,7 @@ fn below_the_elastic_share_it_is_a_spring() {
 /// Sliding steadily its onset is one and its force the Stribeck curve of LuGre.
 #[test]
 fn sliding_steadily_it_is_lugre() {
-    let law = Lugre { viscous_n_s_per_m: Some(60.0), ..laws::endless() };
+    let law = Lugre { viscous_n_s_per_m: Maybe::some(60.0), ..laws::endless() };
     for joint in [Joint::Lugre(law), laws::elasto_plastic(law)] {
         for v in [1e-3_f64, 0.03, 0.3, -0.03] {
             let mut state = PlantState::at_rest();

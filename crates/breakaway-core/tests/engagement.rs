@@ -2,6 +2,7 @@
 
 mod support;
 
+use breakaway_core::Maybe;
 use breakaway_core::joint::{Joint, TwoRegion};
 use breakaway_core::plant::Integrator::{LinearlyImplicitMidpoint, Rk4};
 use breakaway_core::test_models::paper_joint;
@@ -15,7 +16,7 @@ fn two_region() -> TwoRegion<f64> {
         damping_n_s_per_m: 9000.0,
         engagement_length_m: 0.1,
         residual_n: 9.81,
-        backward_ratio: None,
+        backward_ratio: Maybe::none(),
     }
 }
 

@@ -3,8 +3,9 @@
 mod laws;
 mod support;
 
+use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::{Gms, Joint, Lugre, default_shares};
-use breakaway_core::plant::{PlantState, impose_motion};
+use breakaway_core::plant::PlantState;
 use breakaway_core::test_models::paper_joint;
 use support::Rig;
 

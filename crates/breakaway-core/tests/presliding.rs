@@ -5,6 +5,7 @@ mod support;
 
 use std::f64::consts::PI;
 
+use breakaway_core::Maybe;
 use breakaway_core::joint::{Joint, JointState, Law, Lugre, TwoRegion};
 use breakaway_core::test_models::paper_joint;
 use support::Rig;
@@ -139,7 +140,7 @@ fn the_two_region_law_does_not_drift() {
             damping_n_s_per_m: law.damping_n_s_per_m,
             engagement_length_m: law.engagement_length_m,
             residual_n: law.residual_n,
-            backward_ratio: None,
+            backward_ratio: Maybe::none(),
         }),
         0.0,
     );

@@ -4,6 +4,7 @@
 mod laws;
 mod support;
 
+use breakaway_core::Maybe;
 use breakaway_core::disturbance::Factors;
 use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::plant::{Plant, PlantState, Push};
@@ -14,7 +15,7 @@ use support::{Rig, UNDISTURBED, random};
 /// that comes of it, F = max(0, F_0 − S v_m), and the momentum with both.
 #[test]
 fn the_force_agrees_with_the_motion_that_it_causes() {
-    let law = Lugre { viscous_n_s_per_m: Some(60.0), ..paper_joint() };
+    let law = Lugre { viscous_n_s_per_m: Maybe::some(60.0), ..paper_joint() };
     for (name, joint) in laws::all(law) {
         let (mut seed, mut rig) = (5, Rig::at(joint, 0.01));
         let (mut open, mut closed) = (0, 0);
@@ -22,7 +23,7 @@ fn the_force_agrees_with_the_motion_that_it_causes() {
             let (force_n, h) = (900.0 * random(&mut seed), 1e-5);
             let s = 10.0_f64.powf(3.0 + 3.0 * random(&mut seed));
             let factors = Factors { joint_force: 1.0 + 0.2 * random(&mut seed), ..UNDISTURBED };
-            let push = Push { force_n, yielding_n_s_per_m: Some(s) };
+            let push = Push { force_n, yielding_n_s_per_m: Maybe::some(s) };
             let plant = Plant { joint: &rig.joint, mass_kg: 1.0, push, factors };
             let before = rig.state.velocity_m_per_s;
             let moved = plant.step(rig.integrator, &mut rig.state, h);
@@ -44,7 +45,7 @@ fn the_force_agrees_with_the_motion_that_it_causes() {
 #[test]
 fn a_push_that_does_not_yield_is_rigid() {
     for (name, joint) in laws::all(paper_joint()) {
-        let [rigid, yielding] = [None, Some(0.0)].map(|yielding_n_s_per_m| {
+        let [rigid, yielding] = [Maybe::none(), Maybe::some(0.0)].map(|yielding_n_s_per_m| {
             let mut rig = Rig::at(joint, 0.01);
             for n in 0..3000 {
                 let force_n = 0.2 * f64::from(n);
@@ -70,7 +71,7 @@ fn fed(law: Lugre<f64>, h: f64) -> [f64; 2] {
         let ahead_m = FEED_M_PER_S * (f64::from(n) + 0.5) * h - rig.state.position_m;
         let push = Push {
             force_n: CONTACT_N_PER_M * ahead_m,
-            yielding_n_s_per_m: Some(0.5 * h * CONTACT_N_PER_M),
+            yielding_n_s_per_m: Maybe::some(0.5 * h * CONTACT_N_PER_M),
         };
         rig.moved(push, h);
     }

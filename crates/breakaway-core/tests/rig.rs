@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use breakaway_core::control::{AntiWindup, Cascade, DerivativeOf, Gains, Pid, VelocityFrom};
 use breakaway_core::rig::{Drive, LimitedPid, Predicted, RIG_NUMBERS, Rig, Row};
-use breakaway_core::{Dual, Real};
+use breakaway_core::{Dual, Maybe, Real};
 use complex_step::Complex;
 
 /// In the order of [`RIG_NUMBERS`].
@@ -186,7 +186,7 @@ const PID: LimitedPid<f64> = LimitedPid {
         gains: Gains { kp_n_per_m: 40_000.0, ki_n_per_m_s: 2e5, kd_n_s_per_m: 400.0 },
         derivative_of: DerivativeOf::Error,
         velocity_from: VelocityFrom::Sensor,
-        derivative_filter_s: Some(2e-3),
+        derivative_filter_s: Maybe::some(2e-3),
         anti_windup: AntiWindup::BackCalculation,
         tracking_time_s: 0.05,
     },

@@ -3,11 +3,12 @@
 use breakaway_core::control::{Controller, VelocityFrom};
 use breakaway_core::sensor::{DELAY_MAX, Noise, Sensor, SensorState, Sensors};
 use breakaway_core::test_models::paper_as_computed;
-use breakaway_core::{Draws, Extraction, ExtractionState};
+use breakaway_core::{Draws, Extraction, ExtractionState, Maybe};
 use std::f64::consts::PI;
 
-const IDEAL: Sensor<f64> =
-    Sensor { noise_rms: 0.0, quantum: None, bandwidth_hz: None, delay_samples: 0 };
+fn ideal() -> Sensor<f64> {
+    Sensor { noise_rms: 0.0, quantum: Maybe::none(), bandwidth_hz: Maybe::none(), delay_samples: 0 }
+}
 const PERIOD_S: f64 = 1e-5;
 
 fn reads(sensor: &Sensor<f64>, values: impl IntoIterator<Item = (f64, f64)>) -> Vec<f64> {
@@ -18,10 +19,10 @@ fn reads(sensor: &Sensor<f64>, values: impl IntoIterator<Item = (f64, f64)>) -> 
 #[test]
 fn an_ideal_sensor_shows_what_is() {
     for value in [0.0, -0.0, 1e-12, 0.1, -7.5e300, f64::INFINITY] {
-        let shown = reads(&IDEAL, [(value, 0.7)])[0];
+        let shown = reads(&ideal(), [(value, 0.7)])[0];
         assert_eq!(shown.to_bits(), (value + 0.0).to_bits(), "{value}");
     }
-    assert!(reads(&IDEAL, [(f64::NAN, 0.0)])[0].is_nan());
+    assert!(reads(&ideal(), [(f64::NAN, 0.0)])[0].is_nan());
 }
 
 /// Whatever the draws: with ideal sensors the loop has the bits that it has without any.
@@ -30,7 +31,8 @@ fn a_loop_with_ideal_sensors_is_the_loop_without() {
     let mut without = paper_as_computed();
     let Controller::Pid(pid) = &mut without.controller else { unreachable!() };
     pid.velocity_from = VelocityFrom::PositionDifference;
-    let with = Extraction { sensors: Some(Sensors { position: IDEAL, force: IDEAL }), ..without };
+    let with =
+        Extraction { sensors: Some(Sensors { position: ideal(), force: ideal() }), ..without };
     let (mut a, mut b) = (ExtractionState::at_rest(), ExtractionState::at_rest());
     for n in 0..50_000 {
         let w = f64::from(n % 7) - 3.0;
@@ -42,7 +44,7 @@ fn a_loop_with_ideal_sensors_is_the_loop_without() {
 
 #[test]
 fn noise_is_the_draw_times_its_deviation() {
-    let noisy = Sensor { noise_rms: 2e-6, ..IDEAL };
+    let noisy = Sensor { noise_rms: 2e-6, ..ideal() };
     let shown = reads(&noisy, [(1e-3, 1.5), (1e-3, -0.25), (1e-3, 0.0)]);
     for (ours, expected) in shown.iter().zip([1e-3 + 3e-6, 1e-3 - 5e-7, 1e-3]) {
         assert!((ours - expected).abs() < 1e-18, "{ours}");
@@ -51,14 +53,14 @@ fn noise_is_the_draw_times_its_deviation() {
 
 #[test]
 fn steps_are_whole_and_nearest() {
-    let stepped = Sensor { quantum: Some(0.5), ..IDEAL };
+    let stepped = Sensor { quantum: Maybe::some(0.5), ..ideal() };
     let shown = reads(&stepped, [(0.2, 0.0), (0.26, 0.0), (-0.8, 0.0), (1e6 + 0.3, 0.0)]);
     assert_eq!(shown, [0.0, 0.5, -1.0, 1e6 + 0.5]);
     // Noise comes before the steps: half a step of it moves the reading by one.
     let both = Sensor { noise_rms: 0.5, ..stepped };
     assert_eq!(reads(&both, [(0.2, 0.2), (0.2, -1.0)]), [0.5, -0.5]);
     // A uniform input errs by q/√12 rms.
-    let fine = Sensor { quantum: Some(1e-6), ..IDEAL };
+    let fine = Sensor { quantum: Maybe::some(1e-6), ..ideal() };
     let values: Vec<f64> = (0..100_000).map(|n| f64::from(n) * 3.7e-9).collect();
     let shown = reads(&fine, values.iter().map(|&x| (x, 0.0)));
     let square: f64 = shown.iter().zip(&values).map(|(s, x)| (s - x).powi(2)).sum();
@@ -69,7 +71,7 @@ fn steps_are_whole_and_nearest() {
 /// A step: 1 − e^(−2π f t), the newest sample counted; a sine at the corner: 3 dB down.
 #[test]
 fn a_slow_sensor_is_a_first_order_low_pass() {
-    let slow = Sensor { bandwidth_hz: Some(300.0), ..IDEAL };
+    let slow = Sensor { bandwidth_hz: Maybe::some(300.0), ..ideal() };
     let shown = reads(&slow, (0..2000).map(|_| (1.0, 0.0)));
     for (n, ours) in shown.iter().enumerate() {
         let t = (n + 1) as f64 * PERIOD_S;
@@ -94,7 +96,7 @@ fn a_slow_sensor_is_a_first_order_low_pass() {
 #[test]
 fn a_late_sensor_shows_what_was() {
     for delay in 0..=DELAY_MAX as u32 {
-        let late = Sensor { delay_samples: delay, ..IDEAL };
+        let late = Sensor { delay_samples: delay, ..ideal() };
         let shown = reads(&late, (1..=50).map(|n| (f64::from(n), 0.0)));
         for (n, ours) in (1..=50_u32).zip(shown) {
             assert_eq!(ours, f64::from(n.saturating_sub(delay)), "{delay} late at {n}");

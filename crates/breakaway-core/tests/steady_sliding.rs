@@ -2,6 +2,7 @@
 //! alone: the Stribeck curve, equations (4) and (8). The code never computes that curve; it has to
 //! come out of the bristle's differential equation.
 
+use breakaway_core::Maybe;
 use breakaway_core::joint::{Joint, JointState, Law, Lugre};
 use breakaway_core::test_models::paper_joint;
 
@@ -28,7 +29,7 @@ const VELOCITIES: [f64; 10] = [1e-6, 1e-3, 0.01, 0.03, 0.064, 0.09, 0.15, 0.3, 1
 /// R = g(v, x) sgn v + σ₂ v with g from equations (3), (5) and (6), written out again here.
 #[test]
 fn the_settled_force_is_the_stribeck_curve() {
-    for viscous_n_s_per_m in [None, Some(60.0)] {
+    for viscous_n_s_per_m in [Maybe::none(), Maybe::some(60.0)] {
         let law = Lugre { viscous_n_s_per_m, ..paper_joint() };
         for x in [0.0, 0.03, 0.0999] {
             for v in VELOCITIES.into_iter().flat_map(|v| [v, -v]) {

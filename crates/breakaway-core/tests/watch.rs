@@ -4,7 +4,7 @@ use breakaway_core::actuator::{Actuator, ForceActuator, ForceRange};
 use breakaway_core::control::{Controller, ForceRamp, Measurement, SteadyFeed, Watch, WatchState};
 use breakaway_core::sensor::{Noise, Sensor, Sensors};
 use breakaway_core::test_models::paper_as_computed;
-use breakaway_core::{Draws, Extraction, ExtractionState};
+use breakaway_core::{Draws, Extraction, ExtractionState, Maybe};
 
 const WATCH: Watch<f64> = Watch { jump_max_m: 1e-4, frozen_max_s: 1e-3 };
 
@@ -116,15 +116,16 @@ fn the_first_reason_stays_whatever_comes() {
 
 // In the loop
 
-const SENSOR: Sensor<f64> =
-    Sensor { noise_rms: 1.0, quantum: None, bandwidth_hz: None, delay_samples: 0 };
+fn sensor() -> Sensor<f64> {
+    Sensor { noise_rms: 1.0, quantum: Maybe::none(), bandwidth_hz: Maybe::none(), delay_samples: 0 }
+}
 
 /// A loop whose sensors show whatever a test adds to them.
 fn watched(actuator: Actuator<f64>, controller: Controller<f64>) -> Extraction<f64> {
     Extraction {
         actuator,
         controller,
-        sensors: Some(Sensors { position: SENSOR, force: SENSOR }),
+        sensors: Some(Sensors { position: sensor(), force: sensor() }),
         watch: Some(WATCH),
         ..paper_as_computed()
     }

@@ -175,7 +175,10 @@ fn kept(values: Vec<Value>, keep: impl Fn(&str) -> bool) -> Vec<Value> {
 #[must_use]
 pub fn parameters(extraction: &Extraction<f64>) -> Vec<Value> {
     let mut values = Vec::new();
-    extraction.map(&mut |name, value| values.push(Value { path: name.to_string(), value }));
+    extraction.map(&mut |name, value| {
+        values.push(Value { path: name.to_string(), value });
+        value
+    });
     numbered(values)
 }
 

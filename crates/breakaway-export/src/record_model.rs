@@ -2,7 +2,7 @@
 
 use breakaway_core::actuator::Command;
 use breakaway_core::disturbance::Factors;
-use breakaway_core::extraction::Period;
+use breakaway_core::period::Period;
 use breakaway_core::sensor::Noise;
 use breakaway_core::{Draws, Extraction, ExtractionState, Name, Real};
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 from collections.abc import Iterator, Mapping
-from typing import Any, TypeVar, get_origin
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from pydantic import BaseModel
 from breakaway import _core
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.resolution import core_job, resolve, with_gains
+from breakaway.scenario.model import holds_number, numbers_of
 from breakaway.scenario.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -44,7 +45,7 @@ def check_paths(scenario: Scenario, paths: Mapping[str, Any]) -> None:
     """
     for path in paths:
         owner, name = _owner(scenario, path)
-        if not _is_number(type(owner).model_fields[name].annotation):
+        if not holds_number(type(owner).model_fields[name].annotation):
             raise StudyError(f"{path}: is not a number that can differ from run to run")
         if path.split(".")[0] in ("timing", "trace"):
             raise StudyError(
@@ -76,25 +77,9 @@ def number_paths(scenario: Scenario) -> list[str]:
     """
     return [
         path
-        for path in _numbers(with_nominal_controller(scenario), "")
+        for path in numbers_of(with_nominal_controller(scenario))
         if not path.startswith(("timing.", "trace."))
     ]
-
-
-def _numbers(model: BaseModel, prefix: str) -> Iterator[str]:
-    for name, field in type(model).model_fields.items():
-        value = getattr(model, name)
-        if isinstance(value, BaseModel):
-            yield from _numbers(value, f"{prefix}{name}.")
-        elif _is_number(field.annotation):
-            yield f"{prefix}{name}"
-
-
-def _is_number(annotation: object) -> bool:
-    """Whether a field holds a number, maybe one within bounds or one that may be left out."""
-    if get_origin(annotation) is tuple:  # a list of numbers is none
-        return False
-    return annotation is float or any(map(_is_number, getattr(annotation, "__args__", ())))
 
 
 def check_values(scenario: Scenario, columns: Mapping[str, Array], first_run: int = 0) -> None:

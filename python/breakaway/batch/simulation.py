@@ -16,6 +16,7 @@ from breakaway.batch.batch import Batch
 from breakaway.batch.columns import check_paths, check_values, core_columns, with_nominal_controller
 from breakaway.batch.draw import Design, draw_columns
 from breakaway.errors import StudyError
+from breakaway.resolution import check_scenario
 from breakaway.run import RunMetrics
 from breakaway.scenario.distribution import Distribution
 from breakaway.scenario.scenario import Scenario
@@ -80,7 +81,7 @@ def simulate_many(
     StudyError
         What is to vary, a metric or a number of runs is not valid, before anything runs.
     ScenarioError
-        The controller can not be designed for this joint.
+        It is no scenario, or the controller can not be designed for this joint.
     KeyboardInterrupt
         Ctrl-C.
 
@@ -98,6 +99,7 @@ def simulate_many(
     64
 
     """
+    check_scenario(scenario)
     names = _wanted(metrics)
     count = _whole("runs", runs, 1, RUNS_MAX)
     first = _whole("first_run", first_run, 0, 2**63)

@@ -39,16 +39,20 @@ class Courses:
     """The part with the largest jump."""
 
 
-def courses_of(trials: Trials, law: str) -> dict[str, Courses]:
-    """Simulate two parts of each method again, with their traces."""
-    found = {}
-    for name, trial in trials[law].items():
-        median = median_row(trial)
-        found[name] = Courses(
-            median=None if median is None else course_of(trial, median),
-            worst=course_of(trial, worst_row(trial)),
-        )
-    return found
+def courses_of(trials: Trials) -> dict[str, dict[str, Courses]]:
+    """Simulate two parts of each method again under each law, with their traces."""
+    return {
+        law: {name: _courses(trial) for name, trial in by_method.items()}
+        for law, by_method in trials.items()
+    }
+
+
+def _courses(trial: Trial) -> Courses:
+    median = median_row(trial)
+    return Courses(
+        median=None if median is None else course_of(trial, median),
+        worst=course_of(trial, worst_row(trial)),
+    )
 
 
 def course_of(trial: Trial, row: int) -> Course:
@@ -127,12 +131,19 @@ def _largest_stretch(excess: Array) -> tuple[float, int, int]:
 
 
 def _columns(run: Run, rows: Rows) -> dict[str, Array]:
-    """Give time, position, force, and the force that would break the joint loose there."""
+    """Give time, position, force, the force that would break the joint loose there, and the axis.
+
+    A tool without a stack is the tip, and is not told twice.
+    """
     joint = core_joint(run.scenario.joint)
     x = run.trace["position_m"][rows]
+    axis = [name for name in ("feed_m", "tool_m", "tip_m") if name in run.trace]
+    if axis and np.array_equal(run.trace["tool_m"], run.trace["tip_m"]):
+        axis.remove("tool_m")
     return {
         "t_s": run.trace["t_s"][rows],
         "position_m": x,
         "force_n": run.trace["applied_force_n"][rows],
         "breakaway_n": np.array([_core.breakaway_force(joint, float(at)) for at in x]),
+        **{name: run.trace[name][rows] for name in axis},
     }

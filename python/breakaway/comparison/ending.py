@@ -61,7 +61,7 @@ def write_end(
     folder: Path,
 ) -> None:
     """Write table, figures, page and the comparison itself, and last the summary."""
-    courses = courses_of(trials, asked.laws[0])
+    courses = courses_of(trials)
     with output_folder(folder) as staging:
         (staging / TABLE).write_text(as_csv(table), encoding="utf-8", newline="")
         (staging / ASKED).write_text(asked.toml(), encoding="utf-8", newline="\n")
@@ -76,7 +76,10 @@ def write_end(
             result=result,
             notes=notes,
             figures=figures,
-            courses={name: found.worst for name, found in courses.items()},
+            courses={
+                law: {name: found.worst for name, found in by_method.items()}
+                for law, by_method in courses.items()
+            },
         )
         (staging / PAGE).write_text(page, encoding="utf-8", newline="\n")
         files = sorted(path.name for path in staging.iterdir())
@@ -100,12 +103,11 @@ def _draw(
     asked: Asked,
     trials: Trials,
     table: Sequence[Row],
-    courses: Mapping[str, Courses],
+    courses: Mapping[str, Mapping[str, Courses]],
     folder: Path,
 ) -> list[ShownFigure]:
     """Draw and save every figure, and give what the page shows of them."""
     limits = asked.population.gentle, asked.population.strict
-    law = asked.laws[0]
     shown = [
         _saved(
             "shares",
@@ -125,21 +127,24 @@ def _draw(
             "may still fail by their velocity. Crosses: parts left in place.",
         ),
     ]
-    for place, (name, found) in enumerate(courses.items()):
-        figure = plot_course(found.median, found.worst)
-        shown.append(
-            _saved(
-                f"course_{place + 1}",
-                figure,
-                folder,
-                f"{name}, {LAW_WORDS[law]}.",
-                "Force and position of the part in the middle by its largest jump, of those that "
-                "came free; of the part with the largest jump; and of that one about its worst "
-                "slip, which is shaded. Dashed: the force that would break the joint loose where "
-                "the part is.",
-                method=name,
+    for law, by_method in courses.items():
+        for place, (name, found) in enumerate(by_method.items()):
+            figure = plot_course(found.median, found.worst)
+            shown.append(
+                _saved(
+                    f"course_{place + 1}_{law}",
+                    figure,
+                    folder,
+                    f"{name}, {LAW_WORDS[law]}.",
+                    "Force and position of the part in the middle by its largest jump, of those "
+                    "that came free; of the part with the largest jump; and of that one about its "
+                    "worst slip, which is shaded. Dashed: the force that would break the joint "
+                    "loose where the part is. Where the tip of a feed axis is behind the part, it "
+                    "does not push.",
+                    method=name,
+                    law=law,
+                )
             )
-        )
     return shown
 
 
@@ -159,8 +164,15 @@ def _clouds(trials: Trials) -> list[Cloud]:
 
 
 def _saved(
-    key: str, figure: Figure, folder: Path, title: str, caption: str, method: str = ""
+    key: str,
+    figure: Figure,
+    folder: Path,
+    title: str,
+    caption: str,
+    method: str = "",
+    law: str = "",
 ) -> ShownFigure:
     for suffix in ("svg", "png"):
         save_figure(figure, folder / f"{key}.{suffix}")
-    return ShownFigure(key, title, caption, folder / f"{key}.svg", method)
+        figure.set_layout_engine("none")  # it is laid out by now
+    return ShownFigure(key, title, caption, folder / f"{key}.svg", method, law)

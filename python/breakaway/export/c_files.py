@@ -61,7 +61,7 @@ def export_c(
     what : {"controller", "plant", "loop"}
         Reference, controller and watch; or actuator, joint, part and sensors; or both.
     out : path
-        Folder for the files. Files of the same names are replaced.
+        Folder for the files, made if it is missing. Files of the same names are replaced.
     real : {"double", "float"}
         The real type.
 
@@ -72,8 +72,8 @@ def export_c(
     Raises
     ------
     ScenarioError
-        `what` or `real` is not known, the controller can not be designed for this joint, or a
-        number is out of its range as float.
+        It is no scenario, `what` or `real` is not known, the controller can not be designed for
+        this joint, or a number is out of its range as float.
     OutputError
         The folder can not be written.
 

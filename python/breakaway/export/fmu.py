@@ -86,7 +86,8 @@ def export_fmu(
     fmi : {"2", "3"}
         Version of the standard.
     out : path
-        The file, such as ``rig.fmu``. It is replaced, whole or not at all.
+        The file, such as ``rig.fmu``. It is replaced, whole or not at all; missing folders are
+        made.
 
     Returns
     -------
@@ -95,8 +96,8 @@ def export_fmu(
     Raises
     ------
     ScenarioError
-        `what` or `fmi` is not known, the controller can not be designed for this joint, or the
-        seed is beyond the integers of FMI 2.
+        It is no scenario, `what` or `fmi` is not known, the controller can not be designed for this
+        joint, or the seed is beyond the integers of FMI 2.
     OutputError
         The file can not be written.
 

@@ -307,12 +307,12 @@ class JointFile(Model):
         Parameters
         ----------
         path : str or Path
-            The file; its folder must exist.
+            The file; missing folders are made.
 
         Raises
         ------
         OutputError
-            The folder is missing or can not be written, or ``path`` is a folder.
+            The folder can not be made or not be written to, or ``path`` is a folder.
 
         """
         text = tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))

@@ -81,7 +81,8 @@ class Course:
     slip_s: tuple[float, float]
     """When its worst slip began and ended, in s."""
     whole: Mapping[str, Array]
-    """Columns ``t_s``, ``position_m``, ``force_n``, ``breakaway_n`` of the whole course."""
+    """Columns ``t_s``, ``position_m``, ``force_n``, ``breakaway_n`` of the whole course; of a feed
+    axis also ``feed_m`` and ``tip_m``, and with a stack ``tool_m``, as a trace has them."""
     slip: Mapping[str, Array]
     """The same columns about the worst slip."""
 
@@ -241,6 +242,9 @@ def _cloud_legend() -> list[Line2D]:
     ]
 
 
+_TIP: dict[str, Any] = {"color": COLORS["text"], "linewidth": 0.9}
+
+
 def plot_course(median: Course | None, worst: Course) -> Figure:
     """Draw force and position of the middle and the worst part, and the latter's worst slip.
 
@@ -266,7 +270,9 @@ def plot_course(median: Course | None, worst: Course) -> Figure:
             ),
             Line2D([], [], color=COLORS["alternative"], label="position"),
         ]  # fmt: skip
-        figure.legend(handles=handles, loc="outside upper right", ncols=3)
+        if "tip_m" in worst.slip:
+            handles.append(Line2D([], [], label="tip", **_TIP))
+        figure.legend(handles=handles, loc="outside upper right", ncols=len(handles))
         figure.align_ylabels()
     return figure
 
@@ -285,7 +291,8 @@ def _draw_column(panels: Sequence[Axes], course: Course | None, *, zoom: bool, t
     since = began if zoom else 0.0
     t = columns["t_s"] - since
     per_s, time_unit = scaled(t, "s")
-    position = columns["position_m"] - (_position_at(course, began) if zoom else 0.0)
+    origin = _position_at(course, began) if zoom else 0.0
+    position = columns["position_m"] - origin
     per_n, force_unit = scaled([*columns["force_n"], *columns["breakaway_n"]], "N")
     per_m, way_unit = scaled(position, "m")
     upper.plot(t * per_s, columns["force_n"] * per_n, color=COLORS["ours"], linewidth=1.0)
@@ -293,6 +300,8 @@ def _draw_column(panels: Sequence[Axes], course: Course | None, *, zoom: bool, t
         t * per_s, columns["breakaway_n"] * per_n, color=COLORS["text"], linestyle=(0, (4, 2)),
         linewidth=1.0,
     )  # fmt: skip
+    if zoom and "tip_m" in columns:
+        lower.plot(t * per_s, (columns["tip_m"] - origin) * per_m, **_TIP)
     lower.plot(t * per_s, position * per_m, color=COLORS["alternative"], linewidth=1.4)
     for axes in panels:
         axes.axvspan(

@@ -34,15 +34,21 @@ class ShownFigure:
     """Its file."""
     method: str = ""
     """Name of the method that it is about; none for figures of all."""
+    law: str = ""
+    """The friction law that it is about; none for figures of all."""
 
     @property
     def drawing(self) -> Markup:
         """The drawing for the inside of the page.
 
-        Without its metadata, and without names of pictures of points: those of pictures that are
-        the same are the same, and nothing refers to them.
+        Without its metadata, remarks and indents, and without names of pictures of points: those of
+        pictures that are the same are the same, and nothing refers to them. Paths to a hundredth of
+        a point.
         """
-        svg = re.sub(r"<metadata>.*?</metadata>", "", inline_svg(self.svg), flags=re.DOTALL)
+        svg = str(inline_svg(self.svg))
+        svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
+        svg = re.sub(r"\s+", " ", svg)
+        svg = re.sub(r' d="[^"]*"', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path[0]), svg)
         return Markup(re.sub(r' id="[^"]*-image[0-9a-f]+"', "", svg))  # of our own making
 
 
@@ -71,7 +77,7 @@ def comparison_page(
     result: Sequence[str],
     notes: Sequence[str],
     figures: Sequence[ShownFigure],
-    courses: Mapping[str, Course],
+    courses: Mapping[str, Mapping[str, Course]],
 ) -> str:
     """Write the page of a comparison, as self-contained HTML.
 
@@ -94,7 +100,7 @@ def comparison_page(
     figures : sequence of ShownFigure
         Figures, those of single methods after those of all.
     courses : mapping
-        Name of a method -> how its worst part came out.
+        Law -> name of a method -> how its worst part came out.
 
     Returns
     -------
@@ -115,7 +121,10 @@ def comparison_page(
         result=result,
         notes=notes,
         overview=[figure for figure in figures if not figure.method],
-        singles={figure.method: figure for figure in figures if figure.method},
+        singles={
+            method.name: [figure for figure in figures if figure.method == method.name]
+            for method in methods
+        },
         courses=Markup(_json(courses)),
     )
 
@@ -213,10 +222,11 @@ COLUMNS = (
 """Columns of the table; a spread's cell says the median, and the 99 % quantile below."""
 
 
-def _json(courses: Mapping[str, Course]) -> str:
+def _json(courses: Mapping[str, Mapping[str, Course]]) -> str:
     """Give what the animation needs, as JSON that is safe within a page."""
     content = [
         {
+            "law": law,
             "method": name,
             "part": course.run_index,
             "released": course.released,
@@ -229,16 +239,25 @@ def _json(courses: Mapping[str, Course]) -> str:
             "whole": _columns(course.whole, 6),
             "slip": _columns(course.slip, 7),
         }
-        for name, course in courses.items()
+        for law, by_method in courses.items()
+        for name, course in by_method.items()
     ]
     text = json.dumps(content, separators=(",", ":"), allow_nan=False)
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
+POSITIONS = {"x": "position_m", "drive": "feed_m", "tool": "tool_m", "tip": "tip_m"}
+"""Name of a position in the animation -> its column, in mm there."""
+
+
 def _columns(columns: Mapping[str, Any], places: int) -> dict[str, list[float]]:
     return {
         "t": [round(float(v), places) for v in columns["t_s"]],
-        "x": [round(1e3 * float(v), 5) for v in columns["position_m"]],
         "f": [round(float(v), 1) for v in columns["force_n"]],
         "b": [round(float(v), 1) for v in columns["breakaway_n"]],
+        **{
+            key: [round(1e3 * float(v), 5) for v in columns[name]]
+            for key, name in POSITIONS.items()
+            if name in columns
+        },
     }

@@ -157,14 +157,14 @@ def save_identification_report(
     Parameters
     ----------
     path : str or Path
-        The file, such as ``report.html``.
+        The file, such as ``report.html``; missing folders are made.
     found, posterior, profiles, compared, held_out, events
         As for `identification_report`.
 
     Raises
     ------
     OutputError
-        The folder is missing or not writable, or the disk is full.
+        The folder can not be made or not be written to, or the disk is full.
 
     """
     page = identification_report(

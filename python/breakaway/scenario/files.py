@@ -191,7 +191,7 @@ def save_scenario(scenario: Scenario, path: str | Path) -> None:
     scenario : Scenario
         What is written.
     path : str or Path
-        The file; its folder must exist.
+        The file; missing folders are made.
 
     Raises
     ------

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import difflib
 import functools
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Self, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
@@ -46,6 +46,23 @@ class Model(BaseModel):
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Build from nested plain values, as read from a TOML file."""
         return cls(**values)
+
+
+def numbers_of(model: BaseModel, prefix: str = "") -> Iterator[str]:
+    """Give the dotted paths of all fields of a model that hold a number."""
+    for name, field in type(model).model_fields.items():
+        value = getattr(model, name)
+        if isinstance(value, BaseModel):
+            yield from numbers_of(value, f"{prefix}{name}.")
+        elif holds_number(field.annotation):
+            yield f"{prefix}{name}"
+
+
+def holds_number(annotation: object) -> bool:
+    """Whether a field holds a number, maybe one within bounds or one that may be left out."""
+    if get_origin(annotation) in (tuple, dict, list):  # many numbers are none
+        return False
+    return annotation is float or any(map(holds_number, getattr(annotation, "__args__", ())))
 
 
 def explain(error: ValidationError, model: type[BaseModel]) -> str:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import difflib
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.files import preset_names
 from breakaway.studies.study import KINDS, Study
+
+Built = TypeVar("Built")
 
 
 def load_study(path: str | Path) -> Study:
@@ -50,11 +52,25 @@ def load_study(path: str | Path) -> Study:
     1
 
     """
+    return load_table(path, "study", lambda values, at: parse_study(_from_folder(values, at)))
+
+
+def load_table(
+    path: str | Path, what: str, build: Callable[[dict[str, Any], Path], Built]
+) -> Built:
+    """Build what a TOML file describes from its values and its folder; errors name the file.
+
+    Raises
+    ------
+    StudyError
+        There is no such file, it is not TOML, or what it describes can not be built.
+
+    """
     file = Path(path)
     try:
         text = file.read_text(encoding="utf-8")
     except FileNotFoundError:
-        raise StudyError(f"{file}: there is no such file; give the path of a study") from None
+        raise StudyError(f"{file}: there is no such file; give the path of a {what}") from None
     except (OSError, UnicodeDecodeError) as error:
         raise StudyError(f"{file}: can not be read as text: {error}") from None
     if text.startswith("\ufeff"):
@@ -64,7 +80,7 @@ def load_study(path: str | Path) -> Study:
     except (ValueError, RecursionError) as error:
         raise StudyError(f"{file}: is not TOML: {error}") from None
     try:
-        return parse_study(_from_folder(values, file.parent))
+        return build(values, file.parent)
     except (StudyError, ScenarioError) as error:
         separator = "\n" if "\n" in str(error) else " "
         raise StudyError(f"{file}:{separator}{error}") from None

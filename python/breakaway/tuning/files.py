@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
-from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.files import preset_names
+from breakaway.studies.files import load_table
 from breakaway.tuning.problem import Tuning
 
 
@@ -49,24 +48,7 @@ def load_tuning(path: str | Path) -> Tuning:
     100
 
     """
-    file = Path(path)
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise StudyError(f"{file}: there is no such file; give the path of a tuning") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(f"{file}: can not be read as text: {error}") from None
-    if text.startswith("\ufeff"):
-        raise StudyError(f"{file}: starts with a byte order mark; save it as plain UTF-8")
-    try:
-        values = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise StudyError(f"{file}: is not TOML: {error}") from None
-    try:
-        return Tuning.parse(_from_folder(values, file.parent))
-    except (StudyError, ScenarioError) as error:
-        separator = "\n" if "\n" in str(error) else " "
-        raise StudyError(f"{file}:{separator}{error}") from None
+    return load_table(path, "tuning", lambda values, at: Tuning.parse(_from_folder(values, at)))
 
 
 def _from_folder(values: dict[str, Any], folder: Path) -> dict[str, Any]:

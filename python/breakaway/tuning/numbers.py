@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, get_origin
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from breakaway.errors import StudyError
 from breakaway.scenario.method import Method
-from breakaway.scenario.model import valid_range
+from breakaway.scenario.model import numbers_of, valid_range
 
 
 def number_paths(method: Method) -> list[str]:
@@ -25,22 +25,7 @@ def number_paths(method: Method) -> list[str]:
     'controller.rate_n_per_s'
 
     """
-    return [path for path in _numbers(method, "") if path not in method.knows]
-
-
-def _numbers(model: BaseModel, prefix: str) -> Iterator[str]:
-    for name, field in type(model).model_fields.items():
-        value = getattr(model, name)
-        if isinstance(value, BaseModel):
-            yield from _numbers(value, f"{prefix}{name}.")
-        elif _is_number(field.annotation):
-            yield f"{prefix}{name}"
-
-
-def _is_number(annotation: object) -> bool:
-    if get_origin(annotation) in (tuple, dict, list):
-        return False
-    return annotation is float or any(map(_is_number, getattr(annotation, "__args__", ())))
+    return [path for path in numbers_of(method) if path not in method.knows]
 
 
 def check_number(method: Method, path: str, values: Mapping[str, float]) -> None:

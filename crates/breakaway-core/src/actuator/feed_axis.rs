@@ -2,6 +2,7 @@
 
 use super::piezo::Charged;
 use super::{ActuatorState, Command, Driven, Effort, Piezo};
+use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::plant::Push;
@@ -186,7 +187,10 @@ impl<R: Real> FeedAxis<R> {
         let shared = (R::one() / contact.mul_add(chain.tip_yield, R::one())).named("shared");
         let current = charged.current_a;
         Driven {
-            push: Push { force_n: free_n * shared, yielding_n_s_per_m: Some(contact * shared) },
+            push: Push {
+                force_n: free_n * shared,
+                yielding_n_s_per_m: Maybe::some(contact * shared),
+            },
             chain: Some(chain),
             effort: Effort {
                 charge_c: current.abs() * h,

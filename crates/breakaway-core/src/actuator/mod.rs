@@ -186,11 +186,7 @@ pub struct Driven<R> {
 impl<R: Real> Driven<R> {
     #[inline(always)]
     fn rigid(force_n: R) -> Self {
-        Self {
-            push: Push { force_n, yielding_n_s_per_m: None },
-            chain: None,
-            effort: Effort::none(),
-        }
+        Self { push: Push::rigid(force_n), chain: None, effort: Effort::none() }
     }
 }
 

@@ -173,7 +173,7 @@ pub struct VibratingPid<R> {
 
 impl<R: Real> VibratingPid<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> VibratingPid<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> VibratingPid<S> {
         VibratingPid {
             pid: within!("pid", self.pid, f),
             vibration: within!("vibration", self.vibration, f),
@@ -204,7 +204,7 @@ pub enum Controller<R> {
 
 impl<R: Real> Controller<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Controller<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Controller<S> {
         match self {
             Self::Pid(pid) => Controller::Pid(pid.map(f)),
             Self::FmVibration(c) => Controller::FmVibration(c.map(f)),

@@ -1,6 +1,7 @@
 //! Sampled PID force controller.
 
 use super::Measurement;
+use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
@@ -68,7 +69,7 @@ pub struct Pid<R> {
     /// Where the velocity comes from.
     pub velocity_from: VelocityFrom,
     /// τ_f in s, time constant of the first-order filter on the derivative, if it has one.
-    pub derivative_filter_s: Option<R>,
+    pub derivative_filter_s: Maybe<R>,
     /// What is done at the actuator's limits.
     pub anti_windup: AntiWindup,
     /// Tracking time in s of the back calculation, above 0.
@@ -95,12 +96,10 @@ impl<R: Real> PidState<R> {
 }
 
 /// The filtered derivative in parts, d = kept + share · raw, so that a gain can be multiplied in
-/// before the newest velocity is known. Nothing is kept without a filter: zero and no `Option`, whose
-/// empty place compilers compute with before they look whether it is empty.
+/// before the newest velocity is known. Nothing is kept without a filter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Filtered<R> {
-    is_filtered: bool,
-    kept: R,
+    kept: Maybe<R>,
     share: R,
     raw: R,
 }
@@ -110,10 +109,9 @@ impl<R: Real> Gains<R> {
     #[inline(always)]
     fn force(&self, error_m: R, filtered: &Filtered<R>, integral_n: R) -> R {
         let kd = self.kd_n_s_per_m;
-        let base = if filtered.is_filtered {
-            kd.mul_add(filtered.kept, integral_n).named("kept_derivative_n")
-        } else {
-            integral_n
+        let base = match filtered.kept.get() {
+            Some(&kept) => kd.mul_add(kept, integral_n).named("kept_derivative_n"),
+            None => integral_n,
         };
         let steady = self.kp_n_per_m.mul_add(error_m, base).named("proportional_n");
         (kd * filtered.share).mul_add(filtered.raw, steady)
@@ -127,7 +125,7 @@ impl<R: Real> Pid<R> {
             gains,
             derivative_of: DerivativeOf::Error,
             velocity_from: VelocityFrom::Sensor,
-            derivative_filter_s: None,
+            derivative_filter_s: Maybe::none(),
             anti_windup: AntiWindup::Off,
             tracking_time_s: R::one(),
         }
@@ -142,7 +140,7 @@ impl<R: Real> Pid<R> {
     }
 
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Pid<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Pid<S> {
         Pid {
             gains: within!("gains", self.gains, f),
             derivative_of: self.derivative_of,
@@ -179,14 +177,14 @@ impl<R: Real> Pid<R> {
         }
         .named("raw_derivative_m_per_s");
         state.previous_position_m = measured.position_m;
-        let Some(filter_s) = self.derivative_filter_s else {
+        let Some(&filter_s) = self.derivative_filter_s.get() else {
             state.derivative_m_per_s = raw;
-            return Filtered { is_filtered: false, kept: R::zero(), share: R::one(), raw };
+            return Filtered { kept: Maybe::none(), share: R::one(), raw };
         };
         let share = (measured.period_s / (filter_s + measured.period_s)).named("filter_share");
         let kept = ((R::one() - share) * state.derivative_m_per_s).named("kept_m_per_s");
         state.derivative_m_per_s = share.mul_add(raw, kept).ebbed().named("derivative_m_per_s");
-        Filtered { is_filtered: true, kept, share, raw }
+        Filtered { kept: Maybe::some(kept), share, raw }
     }
 
     /// The force in N for `gains` after [`Pid::sense`]; moves the integral.
@@ -274,7 +272,7 @@ mod tests {
             gains: Gains { kp_n_per_m: 1e4, ki_n_per_m_s: 2e5, kd_n_s_per_m: 50.0 },
             derivative_of: DerivativeOf::Error,
             velocity_from: VelocityFrom::Sensor,
-            derivative_filter_s: None,
+            derivative_filter_s: Maybe::none(),
             anti_windup,
             tracking_time_s: 0.01,
         }
@@ -315,7 +313,7 @@ mod tests {
         let controller = Pid {
             derivative_of: DerivativeOf::Measurement,
             velocity_from: VelocityFrom::PositionDifference,
-            derivative_filter_s: Some(5e-3),
+            derivative_filter_s: Maybe::some(5e-3),
             ..pid(AntiWindup::Off)
         };
         let mut state = at_rest();
@@ -359,7 +357,7 @@ mod tests {
         let new = Gains { kp_n_per_m: 3e3, ki_n_per_m_s: 0.0, kd_n_s_per_m: 400.0 };
         let (mut state, measured) = (at_rest(), sample(0.002, 0.0));
         let before = controller.step(&mut state, &measured);
-        let next = Pid { gains: new, derivative_filter_s: Some(5e-3), ..controller };
+        let next = Pid { gains: new, derivative_filter_s: Maybe::some(5e-3), ..controller };
         let mut sensed = at_rest();
         let filtered = next.sense(&mut sensed, &measured);
         assert!(sensed.derivative_m_per_s < 0.5 * state.derivative_m_per_s);

@@ -67,7 +67,7 @@ pub enum SecondStep<R> {
 
 impl<R: Real> TwoStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoStep<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoStep<S> {
         TwoStep {
             breakaway: within!("breakaway", self.breakaway, f),
             vibration: within!("vibration", self.vibration, f),
@@ -130,7 +130,7 @@ impl<R: Real> TwoStep<R> {
 
 impl<R: Real> FirstStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FirstStep<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FirstStep<S> {
         match self {
             Self::Pid(pid) => FirstStep::Pid(pid.map(f)),
             Self::ForceRamp(c) => FirstStep::ForceRamp(c.map(f)),
@@ -173,7 +173,7 @@ impl<R: Real> FirstStep<R> {
 
 impl<R: Real> SecondStep<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SecondStep<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SecondStep<S> {
         match self {
             Self::FmVibration(c) => SecondStep::FmVibration(c.map(f)),
             Self::TimedImpacts(c) => SecondStep::TimedImpacts(c.map(f)),

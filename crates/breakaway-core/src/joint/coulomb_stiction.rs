@@ -2,6 +2,7 @@
 
 use super::lugre::stribeck_level;
 use super::{At, Rigid, engaged_level};
+use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
 
@@ -27,7 +28,7 @@ pub struct CoulombStiction<R> {
     /// F_c0 in N, Coulomb force at the seat.
     pub coulomb_n: R,
     /// σ₂ in N s/m, if there is viscous friction.
-    pub viscous_n_s_per_m: Option<R>,
+    pub viscous_n_s_per_m: Maybe<R>,
     /// v_s in m/s.
     pub stribeck_velocity_m_per_s: R,
     /// l_f in m.
@@ -35,12 +36,12 @@ pub struct CoulombStiction<R> {
     /// F_end in N, friction left at x = l_f.
     pub residual_n: R,
     /// What the levels are multiplied by for backward motion, if they differ.
-    pub backward_ratio: Option<R>,
+    pub backward_ratio: Maybe<R>,
 }
 
 impl<R: Real> CoulombStiction<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> CoulombStiction<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> CoulombStiction<S> {
         let v_s = self.stribeck_velocity_m_per_s;
         CoulombStiction {
             stiction_n: f(Name::of("stiction_n"), self.stiction_n),
@@ -71,8 +72,8 @@ impl<R: Real> CoulombStiction<R> {
         let v_s = self.stribeck_velocity_m_per_s;
         let slips = stribeck_level(levels, end, length, v_s, x, v, factor);
         let level_n = R::select(sliding.is_set(), slips, stuck);
-        let backward_level_n = match self.backward_ratio {
-            Some(ratio) => level_n * ratio,
+        let backward_level_n = match self.backward_ratio.get() {
+            Some(&ratio) => level_n * ratio,
             None => level_n,
         };
         Rigid { level_n, backward_level_n, viscous_n_s_per_m: self.viscous_n_s_per_m }

@@ -1,5 +1,6 @@
 use super::onset::slip_onset;
 use super::{At, Bristle, Frozen, JointState, Law};
+use crate::maybe::Maybe;
 use crate::real::Real;
 use core::f64::consts::LOG2_E;
 
@@ -22,6 +23,7 @@ use core::f64::consts::LOG2_E;
 ///
 /// # Example
 /// ```
+/// use breakaway_core::Maybe;
 /// use breakaway_core::joint::DirectionalLugre;
 /// let friction = DirectionalLugre {
 ///     coulomb_positive_n: 20.0,
@@ -33,7 +35,7 @@ use core::f64::consts::LOG2_E;
 ///     stiffness_n_per_m: 1e6,
 ///     damping_n_s_per_m: 100.0,
 ///     coulomb_slope_n_per_m: 0.0,
-///     elastic_share: None,
+///     elastic_share: Maybe::none(),
 /// };
 /// assert_eq!(friction.level(0.0, 0.1), 20.0);
 /// assert_eq!(friction.level(0.0, -0.1), 30.0);
@@ -59,7 +61,7 @@ pub struct DirectionalLugre<R> {
     /// s in N/m: how the level changes with position; below 0 where a joint disengages.
     pub coulomb_slope_n_per_m: R,
     /// e, from 0 to below 1, of the elasto-plastic law; none for LuGre.
-    pub elastic_share: Option<R>,
+    pub elastic_share: Maybe<R>,
 }
 
 impl<R: Real> DirectionalLugre<R> {
@@ -102,8 +104,8 @@ impl<R: Real> DirectionalLugre<R> {
     #[inline(always)]
     pub fn freeze(&self, state: &JointState<R>, x: R, v: R, level_factor: R) -> Bristle<R> {
         let g = self.level(x, v) * level_factor;
-        let relaxation = match self.elastic_share {
-            Some(share) => {
+        let relaxation = match self.elastic_share.get() {
+            Some(&share) => {
                 slip_onset(share, state.bristle_m, v, self.stiffness_n_per_m, g)
                     * self.stiffness_n_per_m
             }
@@ -116,7 +118,7 @@ impl<R: Real> DirectionalLugre<R> {
             friction_level_n: g,
             stiffness_n_per_m: self.stiffness_n_per_m,
             damping_n_s_per_m: self.damping_n_s_per_m,
-            viscous_n_s_per_m: Some(self.viscous(v)),
+            viscous_n_s_per_m: Maybe::some(self.viscous(v)),
         }
     }
 }

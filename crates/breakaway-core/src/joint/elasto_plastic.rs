@@ -31,7 +31,7 @@ pub struct ElastoPlastic<R> {
 
 impl<R: Real> ElastoPlastic<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ElastoPlastic<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> ElastoPlastic<S> {
         ElastoPlastic {
             friction: self.friction.map(f),
             elastic_share: f(Name::of("elastic_share"), self.elastic_share),

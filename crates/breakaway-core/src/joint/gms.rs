@@ -159,7 +159,7 @@ pub(crate) struct ElementsAhead<R> {
 impl<R: Real> Gms<R> {
     /// Applies `f` to every number: those of [`Lugre`], the attraction, all stiffness shares, all
     /// level shares.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Gms<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Gms<S> {
         Gms {
             friction: self.friction.map(f),
             attraction_n_per_s: f(Name::of("attraction_n_per_s"), self.attraction_n_per_s),

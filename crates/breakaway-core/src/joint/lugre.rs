@@ -3,6 +3,7 @@
 use core::f64::consts::LOG2_E;
 
 use super::{At, Bristle, engaged_level};
+use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
 
@@ -37,7 +38,7 @@ pub struct Lugre<R> {
     /// c in N s/m.
     pub damping_n_s_per_m: R,
     /// σ₂ in N s/m, if there is viscous friction.
-    pub viscous_n_s_per_m: Option<R>,
+    pub viscous_n_s_per_m: Maybe<R>,
     /// v_s in m/s.
     pub stribeck_velocity_m_per_s: R,
     /// l_f in m.
@@ -45,14 +46,14 @@ pub struct Lugre<R> {
     /// F_end in N, friction left at x = l_f.
     pub residual_n: R,
     /// v_d in m/s, if the damping of the bristles falls with speed.
-    pub damping_velocity_m_per_s: Option<R>,
+    pub damping_velocity_m_per_s: Maybe<R>,
     /// What the levels are multiplied by while v < 0, if they differ.
-    pub backward_ratio: Option<R>,
+    pub backward_ratio: Maybe<R>,
 }
 
 impl<R: Real> Lugre<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Lugre<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Lugre<S> {
         let v_s = self.stribeck_velocity_m_per_s;
         Lugre {
             stiction_n: f(Name::of("stiction_n"), self.stiction_n),
@@ -83,9 +84,9 @@ impl<R: Real> Lugre<R> {
     #[inline(always)]
     pub fn plain(&self) -> Self {
         Self {
-            viscous_n_s_per_m: None,
-            damping_velocity_m_per_s: None,
-            backward_ratio: None,
+            viscous_n_s_per_m: Maybe::none(),
+            damping_velocity_m_per_s: Maybe::none(),
+            backward_ratio: Maybe::none(),
             ..*self
         }
     }
@@ -105,8 +106,8 @@ impl<R: Real> Lugre<R> {
     /// g(v, x) in N, multiplied by `factor`: equation (3).
     #[inline(always)]
     pub fn friction_level(&self, x: R, v: R, factor: R) -> R {
-        let factor = match self.backward_ratio {
-            Some(ratio) => factor * R::select(v.lt(R::zero()), ratio, R::one()),
+        let factor = match self.backward_ratio.get() {
+            Some(&ratio) => factor * R::select(v.lt(R::zero()), ratio, R::one()),
             None => factor,
         };
         let (end, length) = (self.residual_n, self.engagement_length_m);
@@ -117,8 +118,8 @@ impl<R: Real> Lugre<R> {
     /// c(v) in N s/m.
     #[inline(always)]
     pub fn damping(&self, v: R) -> R {
-        match self.damping_velocity_m_per_s {
-            Some(v_d) => (self.damping_n_s_per_m * bell(v, v_d)).named("damping_n_s_per_m"),
+        match self.damping_velocity_m_per_s.get() {
+            Some(&v_d) => (self.damping_n_s_per_m * bell(v, v_d)).named("damping_n_s_per_m"),
             None => self.damping_n_s_per_m,
         }
     }

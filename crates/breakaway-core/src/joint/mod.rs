@@ -22,6 +22,7 @@ pub use gms::{ELEMENTS_MAX, ElementState, Elements, Gms, default_shares};
 pub use lugre::Lugre;
 pub use two_region::TwoRegion;
 
+use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::plant::PlantState;
 use crate::real::Real;
@@ -85,7 +86,7 @@ pub struct Rigid<R> {
     /// L_b in N, against backward motion.
     pub backward_level_n: R,
     /// σ in N s/m, if there is viscous friction.
-    pub viscous_n_s_per_m: Option<R>,
+    pub viscous_n_s_per_m: Maybe<R>,
 }
 
 /// A bristle's equation with velocity and position frozen.
@@ -109,7 +110,7 @@ pub struct Bristle<R> {
     /// c in N s/m.
     pub damping_n_s_per_m: R,
     /// σ in N s/m, if there is viscous friction.
-    pub viscous_n_s_per_m: Option<R>,
+    pub viscous_n_s_per_m: Maybe<R>,
 }
 
 impl<R: Real> Bristle<R> {
@@ -128,8 +129,8 @@ impl<R: Real> Bristle<R> {
     /// R for a deflection, its rate and a velocity: equations (1) and (7).
     #[inline(always)]
     pub fn force(&self, v: R, z: R, rate: R) -> R {
-        let damped = match self.viscous_n_s_per_m {
-            Some(sigma) => self.damping_n_s_per_m.mul_add(rate, sigma * v),
+        let damped = match self.viscous_n_s_per_m.get() {
+            Some(&sigma) => self.damping_n_s_per_m.mul_add(rate, sigma * v),
             None => self.damping_n_s_per_m * rate,
         };
         self.stiffness_n_per_m.mul_add(z, damped)
@@ -189,7 +190,7 @@ pub enum Joint<R> {
 
 impl<R: Real> Joint<R> {
     /// Applies `f` to every number of the law.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Joint<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Joint<S> {
         match self {
             Self::Lugre(law) => Joint::Lugre(law.map(f)),
             Self::TwoRegion(law) => Joint::TwoRegion(law.map(f)),

@@ -1,6 +1,7 @@
 //! The two-region law that the paper designs its controller with.
 
 use super::{Bristle, JointState, engaged_level};
+use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
 
@@ -30,12 +31,12 @@ pub struct TwoRegion<R> {
     /// F_end in N, friction left at x = l_f.
     pub residual_n: R,
     /// What the levels are multiplied by while z < 0, if they differ.
-    pub backward_ratio: Option<R>,
+    pub backward_ratio: Maybe<R>,
 }
 
 impl<R: Real> TwoRegion<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoRegion<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> TwoRegion<S> {
         TwoRegion {
             stiction_n: f(Name::of("stiction_n"), self.stiction_n),
             coulomb_n: f(Name::of("coulomb_n"), self.coulomb_n),
@@ -70,8 +71,8 @@ impl<R: Real> TwoRegion<R> {
     ) -> JointState<R> {
         R::section("two regions: breaks loose at k_e |z| > F_s(x), catches when v turns");
         let direction = state.bristle_m.sign().named("direction");
-        let level_factor = match self.backward_ratio {
-            Some(ratio) => level_factor * R::select(direction.lt(R::zero()), ratio, R::one()),
+        let level_factor = match self.backward_ratio.get() {
+            Some(&ratio) => level_factor * R::select(direction.lt(R::zero()), ratio, R::one()),
             None => level_factor,
         };
         let elastic = (self.stiffness_n_per_m * state.bristle_m).abs().named("elastic_n");
@@ -100,7 +101,7 @@ impl<R: Real> TwoRegion<R> {
             friction_level_n: R::one(),
             stiffness_n_per_m: self.stiffness_n_per_m,
             damping_n_s_per_m: self.damping_n_s_per_m,
-            viscous_n_s_per_m: None,
+            viscous_n_s_per_m: Maybe::none(),
         }
     }
 }

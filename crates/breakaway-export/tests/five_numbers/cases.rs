@@ -17,7 +17,7 @@ use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::plant::Integrator;
 use breakaway_core::reference::{Motion, Reference, Step, Trapezoid};
 use breakaway_core::sensor::{Noise, Sensor, Sensors};
-use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Name, Real};
+use breakaway_core::{Draws, Extraction, ExtractionState, Maybe, Metrics, Name, Real};
 
 /// Samples that each case is run for.
 pub(crate) const SAMPLES: u32 = 400;
@@ -25,27 +25,31 @@ pub(crate) const SAMPLES: u32 = 400;
 const HOLD: u32 = 16;
 /// l_f in m.
 const LENGTH_M: f64 = 8e-4;
-const LUGRE: Lugre<f64> = Lugre {
-    stiction_n: 450.0,
-    coulomb_n: 360.0,
-    stiffness_n_per_m: 6e6,
-    damping_n_s_per_m: 1500.0,
-    viscous_n_s_per_m: Some(40.0),
-    stribeck_velocity_m_per_s: 0.09,
-    engagement_length_m: LENGTH_M,
-    residual_n: 150.0,
-    damping_velocity_m_per_s: None,
-    backward_ratio: None,
-};
-const TWO_REGION: TwoRegion<f64> = TwoRegion {
-    stiction_n: 450.0,
-    coulomb_n: 360.0,
-    stiffness_n_per_m: 6e6,
-    damping_n_s_per_m: 1500.0,
-    engagement_length_m: LENGTH_M,
-    residual_n: 150.0,
-    backward_ratio: None,
-};
+fn lugre() -> Lugre<f64> {
+    Lugre {
+        stiction_n: 450.0,
+        coulomb_n: 360.0,
+        stiffness_n_per_m: 6e6,
+        damping_n_s_per_m: 1500.0,
+        viscous_n_s_per_m: Maybe::some(40.0),
+        stribeck_velocity_m_per_s: 0.09,
+        engagement_length_m: LENGTH_M,
+        residual_n: 150.0,
+        damping_velocity_m_per_s: Maybe::none(),
+        backward_ratio: Maybe::none(),
+    }
+}
+fn two_region() -> TwoRegion<f64> {
+    TwoRegion {
+        stiction_n: 450.0,
+        coulomb_n: 360.0,
+        stiffness_n_per_m: 6e6,
+        damping_n_s_per_m: 1500.0,
+        engagement_length_m: LENGTH_M,
+        residual_n: 150.0,
+        backward_ratio: Maybe::none(),
+    }
+}
 const STEP: Step<f64> = Step { distance_m: 1e-3, start_s: 3e-4 };
 const MOTION: Motion<f64> = Motion { distance_m: 1e-3, start_s: 3e-4, duration_s: 2e-3 };
 const TRAPEZOID: Trapezoid<f64> = Trapezoid {
@@ -78,7 +82,8 @@ fn pids() -> Vec<Pid<f64>> {
             for anti_windup in
                 [AntiWindup::Off, AntiWindup::Conditional, AntiWindup::BackCalculation]
             {
-                let derivative_filter_s = if pids.len() % 2 == 0 { None } else { Some(2e-5) };
+                let derivative_filter_s =
+                    if pids.len() % 2 == 0 { Maybe::none() } else { Maybe::some(2e-5) };
                 pids.push(Pid {
                     gains: GAINS,
                     derivative_of,
@@ -131,27 +136,30 @@ fn timings(one_sample_delay: bool) -> [Timing<f64>; 2] {
 
 /// LuGre with every option, and the laws that are not in the full product.
 fn more_joints() -> [Joint<f64>; MORE_JOINTS] {
-    let friction =
-        Lugre { damping_velocity_m_per_s: Some(0.4), backward_ratio: Some(0.7), ..LUGRE };
+    let friction = Lugre {
+        damping_velocity_m_per_s: Maybe::some(0.4),
+        backward_ratio: Maybe::some(0.7),
+        ..lugre()
+    };
     let (stiffness_shares, level_shares) = default_shares(5);
     let gms =
         Gms { friction, attraction_n_per_s: 2e6, elements: 5, stiffness_shares, level_shares };
     let (stiffness_shares, level_shares) = default_shares(10);
-    let plain = Gms { friction: LUGRE, elements: 10, stiffness_shares, level_shares, ..gms };
+    let plain = Gms { friction: lugre(), elements: 10, stiffness_shares, level_shares, ..gms };
     [
         Joint::Lugre(friction),
-        Joint::TwoRegion(TwoRegion { backward_ratio: Some(0.7), ..TWO_REGION }),
+        Joint::TwoRegion(TwoRegion { backward_ratio: Maybe::some(0.7), ..two_region() }),
         Joint::ElastoPlastic(ElastoPlastic { friction, elastic_share: 0.6 }),
         Joint::Gms(gms),
         Joint::Gms(plain),
         Joint::CoulombStiction(CoulombStiction {
             stiction_n: 450.0,
             coulomb_n: 360.0,
-            viscous_n_s_per_m: Some(40.0),
+            viscous_n_s_per_m: Maybe::some(40.0),
             stribeck_velocity_m_per_s: 0.09,
             engagement_length_m: LENGTH_M,
             residual_n: 150.0,
-            backward_ratio: Some(0.7),
+            backward_ratio: Maybe::some(0.7),
         }),
     ]
 }
@@ -177,7 +185,7 @@ pub(crate) const MORE_CASES: u32 = 30;
 
 /// All cases.
 pub(crate) fn all() -> Vec<Case> {
-    let joints = [Joint::Lugre(LUGRE), Joint::TwoRegion(TWO_REGION)];
+    let joints = [Joint::Lugre(lugre()), Joint::TwoRegion(two_region())];
     let references = [
         Reference::Step(STEP),
         Reference::Ramp(MOTION),
@@ -253,15 +261,22 @@ const FORCE: Actuator<f64> = Actuator::Force(ForceActuator {
     force_rate_max_n_per_s: 3e6,
 });
 /// Bandwidth, steps and delay of every kind; noise small enough for a part to be watched by.
-const SENSORS: Sensors<f64> = Sensors {
-    position: Sensor {
-        noise_rms: 1e-8,
-        quantum: Some(1e-8),
-        bandwidth_hz: Some(2e4),
-        delay_samples: 1,
-    },
-    force: Sensor { noise_rms: 1.0, quantum: None, bandwidth_hz: None, delay_samples: 0 },
-};
+fn sensors() -> Sensors<f64> {
+    Sensors {
+        position: Sensor {
+            noise_rms: 1e-8,
+            quantum: Maybe::some(1e-8),
+            bandwidth_hz: Maybe::some(2e4),
+            delay_samples: 1,
+        },
+        force: Sensor {
+            noise_rms: 1.0,
+            quantum: Maybe::none(),
+            bandwidth_hz: Maybe::none(),
+            delay_samples: 0,
+        },
+    }
+}
 /// Trusts what these parts do.
 const WATCH: Watch<f64> = Watch { jump_max_m: 1e-4, frozen_max_s: f64::INFINITY };
 /// Takes the faster ones of these parts for a jump.
@@ -326,7 +341,7 @@ fn pushed() -> [Pushed; PUSHED] {
     let shared = |controllers: &[Controller<f64>]| controllers[0];
     let pid = shared(&controllers()[3..]);
     let pulsed = shared(&controllers()[12..]);
-    let (seen, watch) = (Some(SENSORS), Some(WATCH));
+    let (seen, watch) = (Some(sensors()), Some(WATCH));
     let push_only = Actuator::PushOnly(PushOnly { force_max_n: 800.0 });
     [
         (FORCE, pid, None, None),

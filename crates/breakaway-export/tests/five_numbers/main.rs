@@ -8,7 +8,7 @@ use breakaway_batch::Four;
 use breakaway_batch::lanes::Wide;
 use breakaway_core::Draws;
 use breakaway_core::sensor::Noise;
-use breakaway_core::{Dual, Extraction, ExtractionState, Real};
+use breakaway_core::{Dual, Extraction, ExtractionState, Name, Real};
 use breakaway_export::{Graph, record};
 use cases::{Case, Run, SAMPLES, assert_same, cast, draw, varied};
 
@@ -108,7 +108,10 @@ fn gather(extraction: impl Fn(u64) -> Extraction<f64>) -> Run<Many> {
 
 fn numbers(extraction: &Extraction<f64>) -> Vec<f64> {
     let mut numbers = Vec::new();
-    extraction.map(&mut |_, value| numbers.push(value));
+    extraction.map(&mut |_, value| {
+        numbers.push(value);
+        value
+    });
     numbers
 }
 
@@ -146,8 +149,12 @@ fn a_recorded_step_has_the_bits_of_the_step() {
         let mut run = scalar(case, 0);
         let mut configuration = Vec::new();
         if configuration_is_input {
-            run.extraction.map(&mut |_, value| configuration.push(value));
-            run.limits.map(&mut |_, value| configuration.push(value));
+            let mut push = |_: Name<'_>, value| {
+                configuration.push(value);
+                value
+            };
+            run.extraction.map(&mut push);
+            run.limits.map(&mut push);
         }
         let mut moving: Vec<f64> = run.moving().iter().map(|&(_, value)| value).collect();
         for n in 0..SAMPLES {
@@ -209,8 +216,10 @@ fn the_derivative_of_a_dual_is_the_slope_of_the_scalar_run() {
 
     for (i, parameter) in PARAMETERS.into_iter().enumerate() {
         let mut value = 0.0;
-        case.extraction
-            .map(&mut |name, v| value = if name.field() == parameter { v } else { value });
+        case.extraction.map(&mut |name, v| {
+            value = if name.field() == parameter { v } else { value };
+            v
+        });
         let change = 1e-5;
         let (above, below) = (moved(parameter, change), moved(parameter, -change));
         for (j, (name, ours)) in dual.moving().into_iter().enumerate() {
@@ -248,8 +257,8 @@ fn single_precision_follows_double_precision() {
     for case in cases::all() {
         let mut run = scalar(&case, 0);
         let mut single = Run::<f32>::new(&run.extraction, &mut |_, value| value as f32);
-        let quantum = case.extraction.sensors.and_then(|sensors| sensors.position.quantum);
-        let reading_m = 2.0 * quantum.unwrap_or(0.0);
+        let sensors = case.extraction.sensors;
+        let reading_m = sensors.map_or(0.0, |s| 2.0 * s.position.quantum.unwrap_or(0.0));
         for n in 0..SAMPLES {
             run.step(draw(0, n));
             single.step(cast(&draw(0, n), |value| value as f32));
