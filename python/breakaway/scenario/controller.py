@@ -149,11 +149,12 @@ class TimedImpacts(Model):
     The force grows exponentially, so that an overshoot is relative, and is cut when
     ``(x - x0) + lead * velocity`` reaches the step, or the force reaches a ceiling that creeps up
     until the part slips: what slips at the peak slips under a force that already falls. The part
-    coasts to rest before the next impact.
+    coasts to rest before the next impact. Impacts rise as quickly as slips of this part go.
 
     Above the force of the first slip an impact first dwells and then is raised: a part that is slow
     for its mass needs time. A rough slip lowers the ceiling, puts the target off and makes steps
-    smaller; so does a ceiling that has become low, where little is left to stop a heavy part.
+    smaller; so does a ceiling that has become low, where little is left to stop a heavy part. A
+    part that is late is given larger ones.
 
     Examples
     --------
@@ -176,7 +177,7 @@ class TimedImpacts(Model):
     """Longest time in which it grows by e once something has slipped, in s."""
     rise_min_s: Positive = 1e-3
     """Shortest such time, in s."""
-    rise_per_slip: Positive = 1e3
+    rise_per_slip: Positive = 28.0
     """That time over the mean time of a slip: a part that slips quickly is not pushed for long."""
     slowing_m_per_s: NotNegative = 0.004
     """Velocity above which the force grows slower, in m/s."""
@@ -184,9 +185,9 @@ class TimedImpacts(Model):
     """Velocity above which the force does not grow, in m/s."""
     step_min_m: Positive = 30e-6
     """Smallest step, in m."""
-    step_max_m: Positive = 90e-6
+    step_max_m: Positive = 100e-6
     """Largest step while the part is not late, in m."""
-    travel_min_m: NotNegative = 6e-6
+    travel_min_m: NotNegative = 3e-6
     """Travel below which nothing counts as a slip, in m."""
     restart_ratio: Fraction = 0.93
     """Share of the ceiling at which an impact begins."""
@@ -204,12 +205,12 @@ class TimedImpacts(Model):
     dwell_kept_share: Fraction = 0.9
     """Share of the dwell that stays after a slip that was seen."""
     rough_slip_m: Positive = 150e-6
-    """Travel of a slip beyond which it is rough, in m, and the largest step of a part that is late."""
+    """Travel of a slip beyond which it is rough, and largest step of a part that is late, in m."""
     rough_cut_ratio: Fraction = 0.1
     """Share by which a rough slip lowers the ceiling."""
-    patience_s: NotNegative = 0.2
+    patience_s: NotNegative = 0.6
     """Time by which a rough slip puts target_s off, in s."""
-    patience_max_s: NotNegative = 2.4
+    patience_max_s: NotNegative = 3.2
     """Most by which target_s is put off, in s."""
     caution_per_s: NotNegative = 1.0 / 6.0
     """Share of step_max_m that each second takes by which target_s is put off, in 1/s."""
@@ -218,13 +219,13 @@ class TimedImpacts(Model):
     never."""
     low_step_ratio: Fraction = 0.6
     """Share of step_max_m to which it falls at most."""
-    latest_s: Positive = 7.5
+    latest_s: Positive = 9.0
     """When the part should be out for all that, in s: neither caution nor a low force makes steps
-    smaller than this takes, and steps beyond step_max_m are made if it takes them. Where target_s is
-    later, neither has an effect."""
+    smaller than this takes, and steps beyond step_max_m are made if it takes them. Where target_s
+    is later, neither has an effect."""
     coast_min_s: NotNegative = 1e-3
     """Shortest coast, in s."""
-    settled_m: Positive = 3e-6
+    settled_m: Positive = 2e-6
     """Difference of two means over ten samples at which the part is at rest, in m."""
     lead_start_s: NotNegative = 1e-3
     """Lead at the start, in s."""
@@ -234,7 +235,7 @@ class TimedImpacts(Model):
     """Largest lead, in s."""
     noise_rms_m: NotNegative = 1e-6
     """Deviation of the position sensor's noise, as known, in m."""
-    noise_margin: NotNegative = 2.0
+    noise_margin: NotNegative = 1.0
     """Deviations of noise that a slope must exceed to count."""
     free_margin_m: NotNegative = 3e-6
     """Distance beyond travel_m at which the part is taken as free, in m: noise must not do it."""
@@ -244,6 +245,7 @@ class TimedImpacts(Model):
     @model_validator(mode="after")
     def _is_in_order(self) -> Self:
         for low, high in (
+            ("rise_min_s", "rise_time_constant_s"),
             ("step_min_m", "step_max_m"),
             ("lead_min_s", "lead_max_s"),
             ("slowing_m_per_s", "holding_m_per_s"),

@@ -36,9 +36,10 @@ parameters! {
     /// ```
     ///
     /// with p = `probe_ratio`. If the slip was seen before, C first moves by `breakaway_share` to the
-    /// largest force of that impact as modeled, a lag behind the command. At F_b and above, a
-    /// fruitless impact is not raised at once but dwells longer at C: a part that is slow for its mass
-    /// needs time and not more force, and one whose friction varies slips when that is low.
+    /// largest force of that impact as modeled, a lag behind the command; a part that came back only
+    /// stretched, and was not seen to slip. At F_b and above, a fruitless impact is not raised at once
+    /// but dwells longer at C: a part that is slow for its mass needs time and not more force, and one
+    /// whose friction varies slips when that is low.
     ///
     /// After a rough slip, C is lowered and t_end put off: smaller forces, which are enough only
     /// while friction is low, let go of less. Each second that t_end is put off also takes a share from
@@ -411,7 +412,7 @@ impl<R: Real> TimedImpacts<R> {
             start_m: n.mean_m,
             furthest_m: n.mean_m,
             fastest_m_per_s: zero,
-            slip_s: R::select(n.seen_to_slip.is_set(), slip, n.slip_s),
+            slip_s: R::select(self.stays(n), slip, n.slip_s),
             lead_s: self.next_lead(n, travel),
             recoil_m: recoil,
             cycle_s: cycle,
@@ -420,6 +421,12 @@ impl<R: Real> TimedImpacts<R> {
             ..*n
         };
         ImpactNumbers { step_m: self.next_step(&next), ..next }
+    }
+
+    /// Whether the part was seen to slip and did not come back: else it only stretched.
+    #[inline(always)]
+    fn stays(&self, n: &ImpactNumbers<R>) -> R::Mask {
+        n.seen_to_slip.is_set() & (n.start_m + self.travel_min_m).lt(n.mean_m)
     }
 
     /// Δ in m, in a cycle whose other numbers are known.
@@ -449,7 +456,7 @@ impl<R: Real> TimedImpacts<R> {
     fn next_ceiling(&self, n: &ImpactNumbers<R>, travel: R, rough: R::Mask) -> (R, R) {
         R::section("impacts, next ceiling: C = C (1 + p clip((Delta - s) / Delta, -3, 1))");
         let (zero, one) = (R::zero(), R::one());
-        let slipped = n.seen_to_slip.is_set();
+        let slipped = self.stays(n);
         let first = n.ceiling_n.le(zero);
         let high = !first & (self.dwell_from_ratio * n.first_slip_n).le(n.ceiling_n);
         let dwells = high & n.dwell_s.lt(self.dwell_max_s) & !slipped;
