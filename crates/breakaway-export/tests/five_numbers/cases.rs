@@ -286,11 +286,11 @@ const NERVOUS: Watch<f64> = Watch { jump_max_m: 6e-6, frozen_max_s: 1e-3 };
 const IMPACTS: TimedImpacts<f64> = TimedImpacts {
     travel_m: LENGTH_M,
     target_s: 4e-3,
-    force_start_n: 300.0,
+    force_start_n: 310.0,
     search_time_constant_s: 5e-4,
     rise_time_constant_s: 3e-4,
     rise_min_s: 2e-4,
-    rise_per_slip: 2.0,
+    rise_per_slip: 0.6,
     slowing_m_per_s: 0.2,
     holding_m_per_s: 0.6,
     step_min_m: 2e-4,

@@ -251,7 +251,8 @@ const SMOOTH_NUMBERS: [&str; 7] = [
 /// 5e-8 m at the end. That is less than a part travels in a sample, so no event may move by one. Found:
 /// 55 % of that; 8e-6 of the peak force and 8e-5 of the work. Where a reading has steps, rounding decides
 /// between two of them, so two steps may come on top. Where two events nearly coincide, that is no bound: with
-/// a ramp of 1.5e6 N/s the two-region law went beyond it, and the case has another ramp.
+/// a ramp of 1.5e6 N/s the two-region law went beyond it, with impacts from 300 N on LuGre's did, and the cases
+/// have others.
 #[test]
 fn single_precision_follows_double_precision() {
     for case in cases::all() {
