@@ -109,6 +109,21 @@ def test_what_a_method_knows_has_to_be_a_number_of_it(population):
         scenario_of(population, wrong, "lugre", seed=0, steps=8)
 
 
+def test_a_method_may_be_told_a_multiple_of_a_length(population):
+    method = bk.load_method("steady_feed")
+    told = {"controller.speed_m_per_s": {"of": "engagement_length_m", "times": 5.0}}
+    paced = bk.Method.parse(method.model_dump(exclude_none=True) | {"knows": told})
+    trial = bk.run_trial(population, paced, runs=range(12), seed=2)
+    lengths_m = trial.parts["engagement_length_m"]
+    assert trial.released.all()
+    for row in (0, 5):
+        controller = trial.scenario(row).controller
+        assert controller.speed_m_per_s == 5.0 * lengths_m[row]
+    wrong = told["controller.speed_m_per_s"] | {"times": -1.0}
+    with pytest.raises(ScenarioError, match=r"knows.*times: -1.0 is not > 0"):
+        bk.Method.parse(method.model_dump(exclude_none=True) | {"knows": {"x": wrong}})
+
+
 @pytest.mark.parametrize(
     ("load", "name", "hint"),
     [

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from breakaway.scenario.actuator import Actuator
 from breakaway.scenario.controller import Controller
@@ -36,6 +36,16 @@ class Multiple(Model):
     speed in m/s that is 0.1 times a length in m needs 10 s for it."""
 
 
+def _form_of(told: object) -> str:
+    return "quantity" if isinstance(told, str) else "multiple"
+
+
+Known = Annotated[
+    Annotated[Quantity, Tag("quantity")] | Annotated[Multiple, Tag("multiple")],
+    Discriminator(_form_of),
+]
+
+
 class Method(Model):
     """A way to free parts: what pushes, what decides, and what it knows of each part.
 
@@ -58,7 +68,7 @@ class Method(Model):
     part."""
     reference: Reference | None = None
     """Where the part should be, for controllers that follow one. Left out: 0."""
-    knows: dict[str, Quantity | Multiple] = Field(default_factory=dict)
+    knows: dict[str, Known] = Field(default_factory=dict)
     """Numbers that are told the length of engagement of each part, or a multiple of it, by dotted
     path, such as ``controller.travel_m``; everything else is the same for all parts."""
 
