@@ -73,7 +73,25 @@ class Method(Model):
     path, such as ``controller.travel_m``; everything else is the same for all parts."""
 
     def told(self, engagement_length_m: Array) -> dict[str, Array]:
-        """Give the numbers that each part sets, by dotted path."""
+        """Give the numbers that each part sets.
+
+        Parameters
+        ----------
+        engagement_length_m : array
+            Length of engagement of each part, in m.
+
+        Returns
+        -------
+        dict of str to array
+            A number for each part, by dotted path.
+
+        Examples
+        --------
+        >>> import breakaway as bk, numpy as np
+        >>> bk.load_method("vibrated_feed").told(np.array([0.1]))
+        {'controller.feed.speed_m_per_s': array([0.011])}
+
+        """
         length_m = engagement_length_m
         return {
             path: told.times * length_m if isinstance(told, Multiple) else length_m
