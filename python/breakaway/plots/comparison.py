@@ -161,7 +161,7 @@ def _limits(clouds: Sequence[Cloud], gentle: Gentleness) -> tuple[tuple[float, f
     """Give the ranges of both axes, the gentle box within."""
     peak = np.concatenate([cloud.peak for cloud in clouds])
     jump = np.concatenate([cloud.jump_m for cloud in clouds])
-    peak, jump = (v[np.isfinite(v) & (v > 0.0)] for v in (peak, jump))
+    peak, jump = peak[np.isfinite(peak) & (peak > 0.0)], jump[np.isfinite(jump)]
     x = np.append(peak, gentle.peak_over_breakaway_max)
     y = 1e3 * np.maximum(np.append(jump, gentle.jump_max_m), JUMP_FLOOR_M)
     return ((x.min() / 1.3, x.max() * 1.3), (y.min() / 1.6, y.max() * 1.6))
@@ -199,10 +199,10 @@ def _draw_boxes(
     strict: Gentleness,
 ) -> None:
     (left, right), (low, high) = limits
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     axes.set_xlim(left, right)
     axes.set_ylim(low, high)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
     marks = [mark for mark in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100) if left <= mark <= right]
     axes.set_xticks(marks, [f"{mark:g}" for mark in marks])
     axes.xaxis.set_minor_locator(NullLocator())
