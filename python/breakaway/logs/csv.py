@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from breakaway.errors import LogError
+from breakaway.logs.budget import Budget
 from breakaway.logs.mapping import CsvMapping
 from breakaway.logs.raw import RawChannel, RawFile
 
 
-def read_csv(path: Path, layout: CsvMapping) -> RawFile:
+def read_csv(path: Path, budget: Budget, layout: CsvMapping) -> RawFile:
     """Read a UTF-8 file of separated values with one header line.
 
     Empty lines are accepted at the end only. A column that holds anything but finite numbers
@@ -33,7 +34,7 @@ def read_csv(path: Path, layout: CsvMapping) -> RawFile:
         The file is not UTF-8, holds no header, or a row has more or fewer cells than it.
 
     """
-    header, units, rows = _split(path, layout)
+    header, units, rows = _split(path, budget, layout)
     raw = RawFile(path)
     for place, name in enumerate(header):
         if name in raw.names:
@@ -52,9 +53,11 @@ def read_csv(path: Path, layout: CsvMapping) -> RawFile:
     return raw
 
 
-def _split(path: Path, layout: CsvMapping) -> tuple[list[str], list[str], list[list[str]]]:
+def _split(
+    path: Path, budget: Budget, layout: CsvMapping
+) -> tuple[list[str], list[str], list[list[str]]]:
     """Return the header, the units (empty texts without a units row), and the rows."""
-    table = _table(path, layout)[layout.skip_rows :]
+    table = _table(path, budget, layout)[layout.skip_rows :]
     if len(table) < 1 + layout.units_row:
         raise LogError(
             f"{path.name}: there is no header below {layout.skip_rows} skipped lines; correct "
@@ -79,7 +82,7 @@ def _split(path: Path, layout: CsvMapping) -> tuple[list[str], list[str], list[l
     return header, units, table[first:]
 
 
-def _table(path: Path, layout: CsvMapping) -> list[list[str]]:
+def _table(path: Path, budget: Budget, layout: CsvMapping) -> list[list[str]]:
     try:
         text = path.read_bytes().decode("utf-8-sig").rstrip("\r\n")
     except UnicodeDecodeError as error:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from breakaway.errors import LogError
+from breakaway.logs.budget import Budget
 from breakaway.logs.raw import DEFLATE_RATIO, RawFile, check_size, guarded, need
 
 DEEPEST_GROUP = 8
@@ -19,7 +20,7 @@ TEXT_CLASSES = ("char", "cell", "struct", "string", "function_handle")
 
 
 @guarded("an HDF5 file")
-def read_hdf5(path: Path) -> RawFile:
+def read_hdf5(path: Path, budget: Budget) -> RawFile:
     """Read the one-dimensional arrays of an HDF5 file, whose names are their paths.
 
     The unit of an array is taken from its attribute ``unit`` or ``units``. The members of a
@@ -36,16 +37,16 @@ def read_hdf5(path: Path) -> RawFile:
         h5py is missing, or the file is damaged.
 
     """
-    return _read(path, "/")
+    return _read(path, budget, "/")
 
 
 @guarded("a MATLAB 7.3 file")
-def read_matlab_hdf5(path: Path) -> RawFile:
+def read_matlab_hdf5(path: Path, budget: Budget) -> RawFile:
     """Read a MATLAB 7.3 file, in which a point joins a structure and its field."""
-    return _read(path, ".")
+    return _read(path, budget, ".")
 
 
-def _read(path: Path, separator: str) -> RawFile:
+def _read(path: Path, budget: Budget, separator: str) -> RawFile:
     h5py = need("h5py", "h5py", "hdf5", path, "HDF5")
     raw = RawFile(path)
     with h5py.File(path, "r") as file:

@@ -9,12 +9,13 @@ from typing import Any
 
 from scipy.io import loadmat, whosmat
 
+from breakaway.logs.budget import Budget
 from breakaway.logs.hdf5 import read_matlab_hdf5
 from breakaway.logs.mat5 import decode
 from breakaway.logs.raw import RawFile, check_size, guarded
 
 
-def read_mat(path: Path) -> RawFile:
+def read_mat(path: Path, budget: Budget) -> RawFile:
     """Read the vectors of a MATLAB file of version 4 to 7.3.
 
     The fields of a structure are channels by the name ``structure.field``; structures within
@@ -29,12 +30,12 @@ def read_mat(path: Path) -> RawFile:
     with path.open("rb") as file:
         head = file.read(520)
     if head.startswith((b"MATLAB 7.3", b"\x89HDF")) or head[512:516] == b"\x89HDF":
-        return read_matlab_hdf5(path)
-    return _read(path)
+        return read_matlab_hdf5(path, budget)
+    return _read(path, budget)
 
 
 @guarded("a MATLAB file")
-def _read(path: Path) -> RawFile:
+def _read(path: Path, budget: Budget) -> RawFile:
     raw, data = RawFile(path), path.read_bytes()
     if 0 in data[:4]:  # version 4 has no header, and a zero among its first bytes
         _decode_4(raw, data)

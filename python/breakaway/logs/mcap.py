@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from breakaway.errors import LogError
+from breakaway.logs.budget import Budget
 from breakaway.logs.raw import RawFile, check_size, guarded, need
 
 
@@ -23,7 +24,7 @@ class _Topic:
 
 
 @guarded("an MCAP file")
-def read_mcap(path: Path) -> RawFile:
+def read_mcap(path: Path, budget: Budget) -> RawFile:
     """Read the numbers in the JSON messages of an MCAP file.
 
     Their names are ``topic/field``, or ``topic/field.member`` for nested ones. The stamps are

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from breakaway.logs.budget import Budget
 from breakaway.logs.mdf_blocks import check_blocks
 from breakaway.logs.raw import RawFile, check_size, guarded, need
 from breakaway.logs.units import stated
@@ -17,7 +18,7 @@ TIME = 1
 
 
 @guarded("an MDF 4 file", rings=True)
-def read_mdf(path: Path) -> RawFile:
+def read_mdf(path: Path, budget: Budget) -> RawFile:
     """Read the channels of a finalized MDF file of version 4.
 
     Each has the stamps of the time master of its group. Where several groups have a channel of

@@ -9,13 +9,14 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from breakaway.logs.budget import Budget
 from breakaway.logs.raw import RawFile, check_size, guarded
 
 STAMPS_PER_S = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 
 
 @guarded("a Parquet file")
-def read_parquet(path: Path) -> RawFile:
+def read_parquet(path: Path, budget: Budget) -> RawFile:
     """Read the columns of a Parquet file.
 
     The unit of a column is taken from its metadata ``unit``, where it has this. Time stamps of

@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from breakaway.errors import LogError
+from breakaway.logs.budget import Budget
 from breakaway.logs.channel import Array
 
 DEFLATE_RATIO = 1032
@@ -72,7 +73,7 @@ class RawFile:
             self.channels[name] = RawChannel(array.reshape(-1).astype(np.float64), t_s, unit)
 
 
-Reader = Callable[[Path], RawFile]
+Reader = Callable[[Path, Budget], RawFile]
 
 
 def file_digest(path: Path) -> str:
@@ -118,10 +119,10 @@ def guarded(what: str, rings: bool = False) -> Callable[[Reader], Reader]:
 
     def guard(reader: Reader) -> Reader:
         @functools.wraps(reader)
-        def read(path: Path) -> RawFile:
+        def read(path: Path, budget: Budget) -> RawFile:
             with _quiet():
                 try:
-                    return reader(path)
+                    return reader(path, budget)
                 except LogError:
                     raise
                 except Exception as error:  # a damaged file raises dozens of unrelated types

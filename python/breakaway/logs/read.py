@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from breakaway.errors import LogError
 from breakaway.logs.assemble import assemble
+from breakaway.logs.budget import SHARE, Budget, free_memory_bytes
 from breakaway.logs.csv import read_csv
 from breakaway.logs.detect import detect
 from breakaway.logs.emps import emps_layout, is_emps
@@ -18,10 +19,10 @@ from breakaway.logs.mat import read_mat
 from breakaway.logs.mcap import read_mcap
 from breakaway.logs.mdf import read_mdf
 from breakaway.logs.parquet import read_parquet
-from breakaway.logs.raw import RawFile, file_digest
+from breakaway.logs.raw import Reader, file_digest
 from breakaway.logs.tdms import read_tdms
 
-READERS: dict[str, Callable[[Path], RawFile]] = {
+READERS: dict[str, Reader] = {
     "parquet": read_parquet,
     "mat": read_mat,
     "hdf5": read_hdf5,
@@ -115,7 +116,8 @@ def read_log(
     kind = format or rules.format or detect(path)
     if kind not in FORMATS:
         raise LogError(f"format '{kind}' is unknown; it must be one of {', '.join(FORMATS)}")
-    raw = read_csv(path, rules.csv) if kind == "csv" else READERS[kind](path)
+    budget = Budget(path.name, SHARE * free_memory_bytes())
+    raw = read_csv(path, budget, rules.csv) if kind == "csv" else READERS[kind](path, budget)
     if kind == "emps" or (kind == "mat" and not rules.channels and is_emps(raw)):
         return assemble(*emps_layout(raw), digest)
     log = assemble(raw, rules, digest)

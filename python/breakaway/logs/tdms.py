@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from breakaway.logs.budget import Budget
 from breakaway.logs.channel import Array
 from breakaway.logs.raw import RawFile, check_size, guarded, need
 
 
 @guarded("a TDMS file")
-def read_tdms(path: Path) -> RawFile:
+def read_tdms(path: Path, budget: Budget) -> RawFile:
     """Read the channels of a TDMS file, whose names are ``group/channel``.
 
     A channel with the properties of a waveform (``wf_increment``) has stamps of its own:
