@@ -41,9 +41,33 @@ def rough(scenario):
 
 def assert_same_bits(one, other):
     assert one.outcome == other.outcome
-    assert repr(one.metrics) == repr(other.metrics)  # repr, since NaN is not equal to itself
+    assert repr(one.metrics) == repr(other.metrics)  # repr, since 0.0 equals -0.0
     for name in COLUMNS:
         assert one.trace[name].tobytes() == other.trace[name].tobytes(), name
+
+
+# Results are equal where their values are
+
+
+def test_equal_runs_are_equal(rough):
+    one, other = bk.simulate(rough), bk.simulate(rough)
+    assert np.isnan(one.metrics.time_to_release_s)
+    assert one.metrics == other.metrics
+    assert one == other
+    assert one != bk.simulate(rough, run_index=1)
+    assert one != bk.simulate(rough.with_(name="another"))
+    assert one.metrics != one
+
+
+def test_equal_batches_and_motions_are_equal(rough):
+    columns = {"joint.stiction_n": [400.0, 450.0]}
+    one = bk.simulate_many(rough, 2, vary=columns)
+    assert one == bk.simulate_many(rough, 2, vary=columns)
+    assert one != bk.simulate_many(rough, 2)
+    assert one != bk.simulate_many(rough, 2, vary={"joint.stiction_n": [400.0, 451.0]})
+    joint = bk.resolve(rough).joint
+    moves = [bk.impose_motion(joint, np.full(5, v), period_s=1e-5) for v in (0.1, 0.1, 0.2)]
+    assert moves[0] == moves[1] != moves[2]
 
 
 # The words that a user writes

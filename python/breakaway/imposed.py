@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from breakaway import _core
+from breakaway.equality import ByValue
 from breakaway.errors import ScenarioError
 from breakaway.scenario.joint import SeizedJoint
 
 
-@dataclass(frozen=True)
-class ImposedMotion:
+@dataclass(frozen=True, eq=False)
+class ImposedMotion(ByValue):
     """What a joint did while it was moved; one value for each velocity."""
 
     position_m: NDArray[np.float64]

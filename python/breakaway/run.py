@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.equality import ByValue
 from breakaway.errors import ScenarioError
 from breakaway.scenario.scenario import Scenario
 
@@ -32,8 +33,8 @@ class Outcome(StrEnum):
     """Force, jump or velocity at release exceeded what the scenario allows."""
 
 
-@dataclass(frozen=True)
-class RunMetrics:
+@dataclass(frozen=True, eq=False)
+class RunMetrics(ByValue):
     """The figures of a run. What did not happen is not a number (NaN; null in JSON)."""
 
     simulated_s: float
@@ -105,8 +106,8 @@ class RunMetrics:
         return {name: value if isfinite(value) else None for name, value in asdict(self).items()}
 
 
-@dataclass(frozen=True)
-class Run:
+@dataclass(frozen=True, eq=False)
+class Run(ByValue):
     """A finished run: outcome, figures, trace, and the resolved scenario that reruns it."""
 
     outcome: Outcome

@@ -1,12 +1,15 @@
 """What can not be run is refused before anything runs."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 import breakaway as bk
 from breakaway import _core
 from breakaway.batch import METRICS
-from breakaway.batch.columns import number_paths
+from breakaway.batch.columns import core_columns, number_paths
 
 STICTION = "joint.stiction_n"
 
@@ -211,12 +214,6 @@ def test_numbers_of_the_first_run(refusal, first):
     assert message.startswith(f"first_run: {first!r} is not a whole number >= 0 and < ")
 
 
-@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "all", 4096])
-def test_numbers_of_threads(refusal, threads):
-    message = refusal(threads=threads)
-    assert message.startswith(f"threads: {threads!r} is not a whole number >= 1 and < 4096")
-
-
 @pytest.mark.parametrize("metrics", [[], "iae_m_s", (), 5, iter(["iae_m_s"])])
 def test_metrics_that_are_no_list(refusal, metrics):
     message = refusal(metrics=metrics)
@@ -258,3 +255,46 @@ def test_a_joint_without_a_design(quick):
 def test_instructions_that_are_not_there(quick):
     with pytest.raises(bk.StudyError, match=r"^instructions: .abacus. is not one of "):
         bk.simulate_many(quick, 3, instructions="abacus")
+
+
+THREADS_BEYOND_MEMORY = """
+import resource
+import breakaway as bk
+scenario = bk.load_scenario("paper_as_computed").with_({"timing.duration_s": 0.01})
+bk.simulate_many(scenario, 4, threads=2)
+pages = int(open("/proc/self/statm").read().split()[0])
+room = pages * resource.getpagesize() + 2**28  # for about a hundred stacks of 2 MiB
+resource.setrlimit(resource.RLIMIT_AS, (room, room))
+try:
+    bk.simulate_many(scenario, 1000, threads=1000)
+except bk.StudyError as error:
+    print(error)
+print(len(bk.simulate_many(scenario, 4, threads=2)))
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks the kernel for few threads")
+def test_threads_that_do_not_start_are_told_and_the_next_batch_runs():
+    done = subprocess.run(
+        [sys.executable, "-c", THREADS_BEYOND_MEMORY], capture_output=True, text=True, check=False
+    )
+    said, after = done.stdout.splitlines()
+    assert said.startswith("threads: 1000 can not be started (")
+    assert said.endswith("); give a smaller number")
+    assert (after, done.stderr, done.returncode) == ("4", "", 0)
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "all", 1025, 10**20])
+def test_numbers_of_threads(refusal, threads):
+    assert refusal(threads=threads) == (
+        f"threads: {threads!r} is not a whole number >= 1 and <= 1024"
+    )
+
+
+def test_places_beyond_the_numbers_are_refused_by_the_binding(quick):
+    shared, _ = core_columns(quick, {})
+    runs = np.arange(3, dtype=np.uint64)
+    for place, count in ((10**6, 3), (0, 2), (0, 4)):
+        varied = [(place, np.zeros(count))]
+        with pytest.raises(bk.BreakawayError, match=f"number {place} of .* has {count} values"):
+            _core.run_many(shared, runs, varied, ["iae_m_s"], False, 1, "portable", print)

@@ -18,6 +18,7 @@ from breakaway.identification import LAWS, Cascade, Identification, JointFile, i
 from breakaway.logs import Log
 from breakaway.scenario import Pid
 from breakaway.scenario.controller import Gains
+from breakaway.threads import usable_processors
 
 CASCADE = Cascade(position_gain_per_s=60.0, velocity_gain_n_s_per_m=400.0, force_limit_n=100.0)
 PID = Pid(
@@ -262,7 +263,7 @@ def test_the_same_seed_gives_the_same_bits_on_any_number_of_threads(
     one = identify(rich, law="stribeck", starts=4, seed=3)
     again = identify(rich, law="stribeck", starts=4, seed=3)
     home = importlib.import_module("breakaway.identification.output_error")
-    monkeypatch.setattr(home, "usable_cpus", lambda: 1)
+    monkeypatch.setattr(home, "usable_processors", lambda: 1)
     alone = identify(rich, law="stribeck", starts=4, seed=3)
     assert one.estimates == again.estimates == alone.estimates
     assert one.notes == alone.notes
@@ -470,5 +471,4 @@ def test_any_log_gives_a_joint_or_a_reason(
 
 
 def test_uses_the_cpus_that_it_may() -> None:
-    home = importlib.import_module("breakaway.identification.output_error")
-    assert 1 <= home.usable_cpus() <= (os.cpu_count() or 1)
+    assert 1 <= usable_processors() <= (os.cpu_count() or 1)

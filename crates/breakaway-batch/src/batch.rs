@@ -1,5 +1,6 @@
 //! Many runs of one extraction: in lanes, on threads, each with numbers and draws of its own.
 
+use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
@@ -65,31 +66,44 @@ const TELL_EVERY: Duration = Duration::from_millis(50);
 /// `tell` is told now and then how many runs are done; once it answers `Err`, so does the batch.
 ///
 /// # Errors
-/// What `tell` gave.
+/// What `tell` gave, or what kept a thread from being started.
 pub fn run_batch<E>(
     batch: &Batch,
     wanted: &Wanted,
     threads: usize,
     instructions: Instructions,
     tell: impl FnMut(usize) -> Result<(), E>,
-) -> Result<Results, E> {
+) -> Result<Results, Ended<E>> {
     let groups = wanted.groups(batch);
     let mut results = Results::of(batch.runs.len(), wanted.figures.len());
     let (queue, going) = (Queue::of(0..batch.runs.len()), AtomicBool::new(true));
     thread::scope(|scope| {
         let (sender, done) = mpsc::sync_channel(DONE_MOST);
-        for _ in 0..threads.max(1) {
+        for _ in 0..threads.clamp(1, batch.runs.len().max(1)) {
             let work = Work { batch, groups, going: &going, done: sender.clone() };
             let queue = &queue;
-            scope.spawn(move || take_part(&work, queue, instructions));
+            let part = move || take_part(&work, queue, instructions);
+            if let Err(error) = thread::Builder::new().spawn_scoped(scope, part) {
+                going.store(false, Ordering::Relaxed);
+                return Err(Ended::NoThread(error));
+            }
         }
         drop(sender);
         let kept =
             keep_until_done(&done, |i, run| results.keep(i, &batch.job(i), run, wanted), tell);
         going.store(kept.is_ok(), Ordering::Relaxed);
-        kept
+        kept.map_err(Ended::Told)
     })?;
     Ok(results)
+}
+
+/// Why a batch has no results.
+#[derive(Debug)]
+pub enum Ended<E> {
+    /// `tell` has had enough, and gave this.
+    Told(E),
+    /// The system starts no further thread.
+    NoThread(io::Error),
 }
 
 /// What a thread does of a batch.

@@ -18,7 +18,7 @@ mod trusted;
 #[cfg(feature = "yardstick")]
 pub mod yardstick;
 
-pub use batch::{Batch, Results, Varied, Wanted, run_batch};
+pub use batch::{Batch, Ended, Results, Varied, Wanted, run_batch};
 pub use draws::HeldDraws;
 pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};

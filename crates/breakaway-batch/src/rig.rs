@@ -1,9 +1,10 @@
 //! What a log of a rig should show: simulated, with exact gradients, or only how far off it is for
 //! many sets of numbers at once.
 
+use std::io;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::thread::{self, ScopedJoinHandle};
 
 use breakaway_core::rig::{Drive, Predicted, RIG_NUMBERS, Rig, Row};
 use breakaway_core::{Dual, Real};
@@ -291,15 +292,17 @@ impl Kernel for Misfits<'_> {
 /// How far each of many models is off, in lanes and on `threads` threads. `models` holds the numbers
 /// of one model after the other. A model's misfit does not depend on the others, or on threads.
 ///
+/// # Errors
+/// What kept a thread from being started.
+///
 /// # Panics
 /// If `models` is not a whole number of models.
-#[must_use]
 pub fn rig_misfits(
     record: &Record,
     models: &[f64],
     threads: usize,
     instructions: Instructions,
-) -> Vec<Misfit> {
+) -> io::Result<Vec<Misfit>> {
     let numbers = record.numbers();
     assert_eq!(models.len() % numbers, 0);
     let packs: Vec<&[f64]> = models.chunks(numbers * instructions.lanes()).collect();
@@ -312,11 +315,13 @@ pub fn rig_misfits(
         done
     };
     let mut done: Vec<_> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().flat_map(|worker| worker.join().expect("no panics")).collect()
-    });
+        let start = |_| thread::Builder::new().spawn_scoped(scope, work);
+        let workers = (0..threads.min(packs.len())).map(start).collect::<io::Result<Vec<_>>>()?;
+        let join = |worker: ScopedJoinHandle<_>| worker.join().expect("no panics");
+        io::Result::Ok(workers.into_iter().flat_map(join).collect())
+    })?;
     done.sort_by_key(|&(i, _)| i);
-    done.into_iter().flat_map(|(_, misfits)| misfits).collect()
+    Ok(done.into_iter().flat_map(|(_, misfits)| misfits).collect())
 }
 
 fn take<'a>(packs: &[&'a [f64]], next: &AtomicUsize) -> Option<(usize, &'a [f64])> {

@@ -6,10 +6,10 @@ use breakaway_export::c::{
 use breakaway_export::reference::{Seeded, reference};
 use breakaway_export::{Program, What};
 use pyo3::buffer::PyBuffer;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 
+use crate::error::refused;
 use crate::{as_bytes, job};
 
 /// The C of a part of an extraction: numbers with their names, and function bodies.
@@ -120,10 +120,10 @@ pub(crate) fn export_reference<'py>(
 
 fn what_of(name: &str) -> PyResult<What> {
     let found = What::ALL.into_iter().find(|what| what.prefix() == name);
-    found.ok_or_else(|| PyValueError::new_err(format!("{name} can not be exported")))
+    found.ok_or_else(|| refused(format!("{name} can not be exported")))
 }
 
 fn precision_of(name: &str) -> PyResult<Precision> {
     let found = [Precision::Single, Precision::Double].into_iter().find(|one| one.name() == name);
-    found.ok_or_else(|| PyValueError::new_err(format!("{name} is no real type")))
+    found.ok_or_else(|| refused(format!("{name} is no real type")))
 }

@@ -3,10 +3,10 @@
 use breakaway_batch::draws::{Stream, fraction};
 use breakaway_batch::{Batch, FIGURES, Figure, Instructions, Varied, Wanted, run_batch};
 use pyo3::buffer::PyBuffer;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
+use crate::error::{ended, refused};
 use crate::{as_bytes, job, outcome_code};
 
 /// The names of the instructions that this processor has, the fastest first.
@@ -22,7 +22,7 @@ pub(crate) fn number_place(job: &Bound<'_, PyAny>) -> PyResult<usize> {
     let mut places = numbers.iter().enumerate().filter(|(_, number)| number.is_nan());
     match (places.next(), places.next()) {
         (Some((place, _)), None) => Ok(place),
-        _ => Err(PyValueError::new_err("not exactly one number of the job is not a number")),
+        _ => Err(refused("not exactly one number of the job is not a number")),
     }
 }
 
@@ -57,8 +57,17 @@ pub(crate) fn run_many<'py>(
     let common = job::read(job)?;
     let runs = runs.to_vec(py)?;
     let mut columns = Vec::new();
+    let numbers = common.numbers().len();
     for (place, values) in varied {
-        columns.push((place, values.to_vec(py)?));
+        let values = values.to_vec(py)?;
+        if place >= numbers || values.len() != runs.len() {
+            return Err(refused(format!(
+                "number {place} of {numbers} has {} values for {} runs",
+                values.len(),
+                runs.len()
+            )));
+        }
+        columns.push((place, values));
     }
     let varied = columns.iter().map(|(place, values)| Varied { place: *place, values }).collect();
     let batch = Batch { common, runs: &runs, varied };
@@ -66,7 +75,7 @@ pub(crate) fn run_many<'py>(
     let instructions = Instructions::available()
         .into_iter()
         .find(|one| one.name() == instructions)
-        .ok_or_else(|| PyValueError::new_err(format!("{instructions} is not available")))?;
+        .ok_or_else(|| refused(format!("{instructions} is not available")))?;
     let tell = tell.unbind();
     let results = py.detach(|| {
         run_batch(&batch, &wanted, threads, instructions, |done| {
@@ -75,6 +84,7 @@ pub(crate) fn run_many<'py>(
                 tell.call1(py, (done,)).map(drop)
             })
         })
+        .map_err(|why| ended(threads, why))
     })?;
     let by_name = PyDict::new(py);
     for (name, column) in figures.iter().zip(&results.figures) {
@@ -87,7 +97,7 @@ pub(crate) fn run_many<'py>(
 fn named(names: &[String]) -> PyResult<Vec<Figure>> {
     let find = |name: &String| {
         let found = FIGURES.iter().find(|figure| figure.name == name).copied();
-        found.ok_or_else(|| PyValueError::new_err(format!("{name} is not a figure")))
+        found.ok_or_else(|| refused(format!("{name} is not a figure")))
     };
     names.iter().map(find).collect()
 }

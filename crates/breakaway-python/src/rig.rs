@@ -3,12 +3,11 @@
 use breakaway_batch::{Instructions, Kept, Record, differentiate_rig, rig_misfits, simulate_rig};
 use breakaway_core::rig::Row;
 use pyo3::buffer::PyBuffer;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::as_bytes;
-use crate::error::unreadable;
+use crate::error::{no_thread, refused, unreadable};
 
 /// A record of a rig, and how models of it are run.
 #[pyclass(frozen, module = "breakaway._core")]
@@ -34,13 +33,13 @@ impl RigRecord {
         }
         let count = values[0].len();
         if values.iter().any(|column| column.len() != count) {
-            return Err(PyValueError::new_err("columns differ in length"));
+            return Err(refused("columns differ in length"));
         }
         if steps == 0 || segments.is_empty() {
-            return Err(PyValueError::new_err("there must be steps and segments"));
+            return Err(refused("there must be steps and segments"));
         }
         if segments.iter().any(|&(first, end)| first >= end || end > count) {
-            return Err(PyValueError::new_err("a segment is empty or beyond the rows"));
+            return Err(refused("a segment is empty or beyond the rows"));
         }
         let row = |i: usize| Row {
             position_m: values[0][i],
@@ -82,7 +81,7 @@ impl RigRecord {
         self.check(numbers.len())?;
         self.check(variable.len())?;
         if every == 0 || variable.iter().flatten().any(|&index| index >= 24) {
-            return Err(PyValueError::new_err("no rows are kept, or there are over 24 variables"));
+            return Err(refused("no rows are kept, or there are over 24 variables"));
         }
         let kept = Kept { position, every };
         let instructions = Instructions::fastest();
@@ -100,9 +99,11 @@ impl RigRecord {
     ) -> PyResult<Bytes<'py>> {
         let models = models.to_vec(py)?;
         if models.len() % self.0.numbers() != 0 {
-            return Err(PyValueError::new_err("not a whole number of models"));
+            return Err(refused("not a whole number of models"));
         }
-        let misfits = py.detach(|| rig_misfits(&self.0, &models, threads, Instructions::fastest()));
+        let misfits = py
+            .detach(|| rig_misfits(&self.0, &models, threads, Instructions::fastest()))
+            .map_err(|error| no_thread(threads, error))?;
         let pairs: Vec<f64> =
             misfits.iter().flat_map(|one| [one.position_m2, one.force_n2]).collect();
         as_bytes(py, &pairs)
@@ -114,6 +115,6 @@ impl RigRecord {
         if numbers == self.0.numbers() {
             return Ok(());
         }
-        Err(PyValueError::new_err(format!("{} numbers are needed", self.0.numbers())))
+        Err(refused(format!("{} numbers are needed", self.0.numbers())))
     }
 }

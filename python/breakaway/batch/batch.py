@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
 from breakaway.batch.columns import at_run
+from breakaway.equality import ByValue
 from breakaway.errors import StudyError
 from breakaway.run import Run
 from breakaway.scenario.scenario import Scenario
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True)
-class Batch:
+@dataclass(frozen=True, eq=False)
+class Batch(ByValue):
     """Many finished runs of one scenario, as columns: one value for each run."""
 
     scenario: Scenario

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from types import MappingProxyType
@@ -20,6 +19,7 @@ from breakaway.resolution import check_scenario
 from breakaway.run import RunMetrics
 from breakaway.scenario.distribution import Distribution
 from breakaway.scenario.scenario import Scenario
+from breakaway.threads import thread_count
 
 METRICS = (*(field.name for field in fields(RunMetrics)), "outcome")
 """What can be asked of each run."""
@@ -103,7 +103,7 @@ def simulate_many(
     names = _wanted(metrics)
     count = _whole("runs", runs, 1, RUNS_MAX)
     first = _whole("first_run", first_run, 0, 2**63)
-    workers = os.cpu_count() if threads is None else _whole("threads", threads, 1, 4096)
+    workers = thread_count(threads)
     if instructions not in (None, *_core.instructions()):
         raise StudyError(
             f"instructions: {instructions!r} is not one of {', '.join(_core.instructions())}"
@@ -114,7 +114,7 @@ def simulate_many(
     check_values(nominal, columns, first)
     run_index = np.arange(first, first + count, dtype=np.uint64)
     tell = None if progress is None else lambda done: progress(done, count)
-    return run_columns(nominal, run_index, columns, names, workers or 1, tell, instructions)
+    return run_columns(nominal, run_index, columns, names, workers, tell, instructions)
 
 
 def run_columns(

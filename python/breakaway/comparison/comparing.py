@@ -15,20 +15,22 @@ from breakaway.comparison.ending import ended, manifest_of, write_end
 from breakaway.comparison.findings import notes_of, sentences_of
 from breakaway.comparison.table import table_of
 from breakaway.comparison.trial_files import Chunk, TrialFiles, chunks_of
+from breakaway.equality import ByValue
 from breakaway.errors import OutputError, StudyError
 from breakaway.scenario.method import Method
 from breakaway.scenario.population import Law, PartPopulation
 from breakaway.studies import StudyProgress
 from breakaway.studies.folder import prepared
 from breakaway.studies.plan import Row
+from breakaway.threads import thread_count
 from breakaway.trials import Trial, run_trial
 
 DRAWING = "figures and page"
 """What is done, in words, once all parts are tried."""
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, eq=False)
+class Comparison(ByValue):
     """A finished comparison: what each method did to the same parts, and what that shows."""
 
     asked: Asked
@@ -143,8 +145,7 @@ def compare_methods(
 
     """
     asked = ask(population, methods, laws=laws, runs=runs, seed=seed, baselines=baselines)
-    if threads is not None and (isinstance(threads, bool) or threads < 1):
-        raise StudyError(f"threads: {threads!r} is not a whole number >= 1")
+    thread_count(threads)
     folder = None if out is None else Path(out)
     with _held(folder, asked, resume=resume):
         runner = _Runner(asked, folder, threads, progress, notice)

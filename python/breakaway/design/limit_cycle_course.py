@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from breakaway.design.limit_cycle import Oscillator, oscillator_of
 from breakaway.design.loop import SampledPid
 from breakaway.design.stribeck import FrictionLaw, StribeckLaw
+from breakaway.equality import ByValue
 from breakaway.errors import ScenarioError
 
 Array = NDArray[np.float64]
@@ -41,8 +42,8 @@ FLAT = 2.5
 Verdict = Literal["agree: oscillation", "agree: none", "only predicted", "only simulated"]
 
 
-@dataclass(frozen=True)
-class Cycles:
+@dataclass(frozen=True, eq=False)
+class Cycles(ByValue):
     """Cycles of an oscillation of the speed about a mean that moves, one row each."""
 
     t_s: Array
@@ -55,8 +56,8 @@ class Cycles:
     """Mean speed of the reference during them, in m/s."""
 
 
-@dataclass(frozen=True)
-class LimitCycleComparison:
+@dataclass(frozen=True, eq=False)
+class LimitCycleComparison(ByValue):
     """A predicted limit cycle against the oscillation of a run."""
 
     verdict: Verdict

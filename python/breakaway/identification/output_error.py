@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -15,6 +14,7 @@ from scipy.optimize import least_squares
 from breakaway._core import RigRecord
 from breakaway.identification.laws import Layout
 from breakaway.logs.log import Array
+from breakaway.threads import usable_processors
 
 Loss = Literal["linear", "soft_l1", "huber", "cauchy"]
 LOSSES: tuple[Loss, ...] = ("linear", "soft_l1", "huber", "cauchy")
@@ -95,7 +95,7 @@ class Problem:
     def sums_of_squares(self, internal: Array, threads: int = 0) -> Array:
         """Return the sum of squared residuals of many sets of parameters (k, n), in lanes."""
         numbers = np.ascontiguousarray(self.layout.numbers(internal).reshape(-1))
-        pairs = np.frombuffer(self.record.misfits(numbers, threads or usable_cpus()))
+        pairs = np.frombuffer(self.record.misfits(numbers, threads or usable_processors()))
         sums = pairs.reshape(-1, 2)[:, 0 if self._is_position else 1] / self.scale**2
         worst = len(self.measured) * HOPELESS**2
         return np.minimum(np.nan_to_num(sums, nan=worst, posinf=worst), worst)
@@ -109,11 +109,6 @@ class Minimum:
     cost: float
     evaluations: int
     converged: bool
-
-
-def usable_cpus() -> int:
-    """Return how many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def minimize(
@@ -206,7 +201,7 @@ def _follow(
     progress: Progress | None,
 ) -> tuple[list[Minimum], bool]:
     complete = True
-    with ThreadPoolExecutor(min(usable_cpus(), len(starts))) as pool:
+    with ThreadPoolExecutor(min(usable_processors(), len(starts))) as pool:
         runs = [pool.submit(minimize, problem, start, bounds, loss, most) for start in starts]
         try:
             for finished, _ in enumerate(as_completed(runs), start=1):

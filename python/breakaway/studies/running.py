@@ -30,6 +30,7 @@ from breakaway.studies.study import (
     SweepStudy,
 )
 from breakaway.studies.sweep import SweepPlan
+from breakaway.threads import thread_count
 
 
 @dataclass(frozen=True)
@@ -104,6 +105,7 @@ def run_study(
     ['0 of 20 runs released, at 1 point of 20 each']
 
     """
+    thread_count(threads)
     plan = plan_of(study)
     for point in plan.points:
         point.check()

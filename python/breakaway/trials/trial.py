@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -10,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.batch import run_columns
+from breakaway.equality import ByValue
 from breakaway.run import Run
 from breakaway.scenario.method import Method
 from breakaway.scenario.population import Gentleness, Law, PartPopulation
 from breakaway.scenario.scenario import Scenario
+from breakaway.threads import thread_count
 from breakaway.trials.parts import draw_parts, part_columns, scenario_of, steps_per_period
 
 Array = NDArray[np.float64]
@@ -39,8 +40,8 @@ TRIAL_METRICS = (
 """What is recorded of each part."""
 
 
-@dataclass(frozen=True)
-class Trial:
+@dataclass(frozen=True, eq=False)
+class Trial(ByValue):
     """A method on parts of a population, as columns: one value for each part."""
 
     population: PartPopulation
@@ -153,6 +154,7 @@ def run_trial(
     8
 
     """
+    workers = thread_count(threads)
     parts = draw_parts(population, runs, seed=seed)
     steps = steps_per_period(population, parts)
     metrics = {name: np.full(len(runs), np.nan) for name in TRIAL_METRICS}
@@ -172,7 +174,7 @@ def run_trial(
             np.asarray(runs.start + rows, dtype=np.uint64),
             part_columns(population, method, law, group),
             TRIAL_METRICS,
-            threads or os.cpu_count() or 1,
+            workers,
             tell,
         )
         for name in TRIAL_METRICS:

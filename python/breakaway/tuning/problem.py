@@ -18,6 +18,8 @@ from breakaway.trials import scenario_of
 from breakaway.tuning.numbers import check_number, number_of, with_numbers
 from breakaway.tuning.scores import PIEZO_METRICS, SHARES, ScoreKind, score_kind
 
+TRIALS_MAX = 10_000
+"""Most trials of a tuning."""
 TEST_FIRST, TEST_RUNS = 1_000_000, 1000
 """Unseen parts where a tuning does not say which."""
 
@@ -178,7 +180,7 @@ class Tuning(StudyModel):
     """Parts that are tuned on: numbers 0 to training_runs - 1."""
     test_runs: PartRange = PartRange(first=TEST_FIRST, runs=TEST_RUNS)
     """Parts that the tuned method is scored on and that tuning never sees."""
-    trials: Annotated[int, Field(ge=1, le=10_000)] = 100
+    trials: Annotated[int, Field(ge=1, le=TRIALS_MAX)] = 100
     """How many methods are tried."""
     sampler_seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     """Seed of the choice of methods."""

@@ -13,6 +13,7 @@ from breakaway.errors import OutputError, StudyError
 from breakaway.scenario.method import Method
 from breakaway.studies.folder import FORMAT, MANIFEST, SUMMARY, identity_of, prepared
 from breakaway.studies.parts import PARTS
+from breakaway.threads import thread_count
 from breakaway.tuning.evaluation import (
     Evaluation,
     Laws,
@@ -22,7 +23,7 @@ from breakaway.tuning.evaluation import (
     recommended,
     run_laws,
 )
-from breakaway.tuning.problem import Tuning
+from breakaway.tuning.problem import TRIALS_MAX, Tuning
 from breakaway.tuning.records import Records
 from breakaway.tuning.result import TRIALS, UNSEEN, TuningResult, open_tuning
 from breakaway.tuning.scores import laws_as_json, laws_of_json
@@ -134,13 +135,11 @@ def tune(
 
 
 def _check_counts(trials: int | None, threads: int | None) -> None:
-    for name, value, high in (("trials", trials, 10_000), ("threads", threads, 4096)):
-        if value is not None and (
-            isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= high
-        ):
-            raise StudyError(
-                f"{name}: {value!r} is not a whole number >= 1 and <= {high}; give such a number"
-            )
+    thread_count(threads)
+    if trials is None:
+        return
+    if isinstance(trials, bool) or not isinstance(trials, int) or not 1 <= trials <= TRIALS_MAX:
+        raise StudyError(f"trials: {trials!r} is not a whole number >= 1 and <= {TRIALS_MAX}")
 
 
 def _check_found(folder: Path, tuning: Tuning) -> None:

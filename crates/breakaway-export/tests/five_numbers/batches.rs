@@ -5,7 +5,7 @@ use std::convert::Infallible;
 
 use breakaway_batch::draws::{Stream, uniform};
 use breakaway_batch::{
-    Batch, FIGURES, Figure, Instructions, Job, Results, Varied, Wanted, run, run_batch,
+    Batch, Ended, FIGURES, Figure, Instructions, Job, Results, Varied, Wanted, run, run_batch,
 };
 use breakaway_core::Outcome;
 use breakaway_core::disturbance::DrawLaw;
@@ -52,7 +52,8 @@ fn everything() -> Wanted {
 }
 
 fn finish(batch: &Batch, wanted: &Wanted, threads: usize, with: Instructions) -> Results {
-    let Ok(results) = run_batch::<Infallible>(batch, wanted, threads, with, |_| Ok(()));
+    let results = run_batch::<Infallible>(batch, wanted, threads, with, |_| Ok(()))
+        .expect("a few threads start");
     results
 }
 
@@ -182,5 +183,5 @@ fn a_batch_stops_when_it_is_told_to() {
         });
     let batch = Batch { common: endless, runs: &runs, varied: Vec::new() };
     let stopped = run_batch(&batch, &everything(), 2, Instructions::fastest(), |_| Err("enough"));
-    assert_eq!(stopped.err(), Some("enough"));
+    assert!(matches!(stopped, Err(Ended::Told("enough"))));
 }
