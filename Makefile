@@ -14,7 +14,7 @@ help:
 	@echo "make demo    set up, then reproduce the paper into out/reproduction"
 	@echo "make test    set up, then run every test"
 	@echo "make test-firmware   exported controllers on an emulated Cortex-M4F; says what to install"
-	@echo "make lint    formatting, static checks, layer rules"
+	@echo "make lint    formatting, static checks, layer rules, locks, known faults"
 	@echo "make bench   measure speed and memory, into bench/results.json"
 	@echo "make peers   the same loop in other tools, into bench/peers/results.md"
 	@echo "make docs    Rust API pages, and the pictures of the README"
@@ -39,6 +39,7 @@ lint: $(VENV)/.built $(VENV)/.development
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tools/check_locks.py
+	$(BIN)/python tools/check_known_faults.py
 
 bench: $(VENV)/.built
 	$(BIN)/python bench/measure.py
@@ -56,6 +57,7 @@ $(VENV)/.installer: tools/check_toolchain.sh requirements/installer.lock
 	@sh tools/check_toolchain.sh $(PYTHON)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements/installer.lock
+	$(BIN)/python -m pip uninstall --quiet --yes setuptools
 	@touch $@
 
 $(VENV)/.runtime: $(VENV)/.installer requirements/runtime.lock
@@ -78,6 +80,7 @@ $(PEERS)/.installed: $(VENV)/.runtime bench/peers/requirements.lock
 	@touch $@
 
 lock: $(VENV)/.installer
+	printf 'pip\nuv\n' | $(UV) pip compile - --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url -o requirements/installer.lock
 	$(UV) pip compile pyproject.toml --all-extras --group build --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/runtime.lock
 	$(UV) pip compile pyproject.toml --all-extras --group build --group dev --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/dev.lock
 	$(UV) pip compile pyproject.toml bench/peers/requirements.in --constraint requirements/runtime.lock --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o bench/peers/requirements.lock

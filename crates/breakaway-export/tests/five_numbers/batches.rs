@@ -52,9 +52,7 @@ fn everything() -> Wanted {
 }
 
 fn finish(batch: &Batch, wanted: &Wanted, threads: usize, with: Instructions) -> Results {
-    let results = run_batch::<Infallible>(batch, wanted, threads, with, |_| Ok(()))
-        .expect("a few threads start");
-    results
+    run_batch::<Infallible>(batch, wanted, threads, with, |_| Ok(())).expect("a few threads start")
 }
 
 fn assert_same_as_single(context: &str, batch: &Batch, wanted: &Wanted, results: &Results) {
