@@ -52,15 +52,6 @@ def test_names_the_extra_of_a_missing_package(
         read_log(path)
 
 
-def test_names_the_extra_for_mdf(every_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "asammdf", None)
-    if every_file.suffix == ".mf4":
-        with pytest.raises(LogError, match=r"needs asammdf; .*'breakaway\[mdf\]'"):
-            read_log(every_file)
-    else:
-        assert read_log(every_file).rows == 200
-
-
 # Parquet
 
 
@@ -292,7 +283,7 @@ def test_mdf_blocks_in_a_ring_are_refused(every_file: Path, tmp_path: Path) -> N
     data[group + 24 : group + 32] = group.to_bytes(8, "little")  # the next group is this one
     path = tmp_path / "ring.mf4"
     path.write_bytes(data)
-    with pytest.raises(LogError, match=rf"the block at byte {group} leads to itself"):
+    with pytest.raises(LogError, match=rf"the block at byte {group} belongs to two places, or"):
         read_log(path)
 
 
