@@ -20,6 +20,8 @@ HEAD = struct.Struct("<4s4xQQ")
 FIRST = 64
 """Place of the header block, behind the identification."""
 
+HEAD_BYTES = 256
+
 MOST_LINKS = 1_000_000
 LONGEST_TEXT = 1_000_000
 """Most links, and most bytes of a text that is read, of one block."""
@@ -42,6 +44,8 @@ class Block:
 
     end: int
     """Where the content ends."""
+    head: bytes
+    """The first bytes of the block, up to `HEAD_BYTES`, so that most need no second look."""
 
     def link(self, number: int) -> int:
         """Return where a link leads; 0 stands for nowhere."""
@@ -60,7 +64,7 @@ class Blocks:
         self._size = file.seek(0, 2)
         self._seen: set[int] = set()
 
-    def bytes(self, place: int, count: int) -> bytes:
+    def read(self, place: int, count: int) -> bytes:
         """Return bytes of the file."""
         self._file.seek(place)
         found = self._file.read(count)
@@ -72,19 +76,32 @@ class Blocks:
         """Return the block of one of some kinds at a place."""
         if place + HEAD.size > self._size:
             raise self.damaged(place, "begins beyond the end of the file")
-        kind, length, count = HEAD.unpack(self.bytes(place, HEAD.size))
+        head = self.read(place, min(HEAD_BYTES, self._size - place))
+        kind, length, count = HEAD.unpack_from(head)
         name = kind[2:].decode("latin-1")
         if kind[:2] != b"##" or name not in kinds:
             raise self.damaged(place, f"is of type {name!r}, not {' or '.join(kinds)}")
         if length < HEAD.size + 8 * count or place + length > self._size or count > MOST_LINKS:
             raise self.damaged(place, f"claims {length} bytes with {count} links")
-        content = place + HEAD.size + 8 * count
-        links = struct.unpack(f"<{count}Q", self.bytes(place + HEAD.size, 8 * count))
-        return Block(name, place, links, content, place + length)
+        content = HEAD.size + 8 * count
+        raw_links = head[HEAD.size : content]
+        if content > len(head):
+            raw_links = self.read(place + HEAD.size, 8 * count)
+        links = struct.unpack(f"<{count}Q", raw_links)
+        return Block(name, place, links, place + content, place + length, head[:length])
+
+    def part(self, block: Block, offset: int, count: int) -> bytes:
+        """Return bytes of the content of a block."""
+        begin = block.content - block.place + offset
+        if block.place + begin + count > block.end:
+            raise self.damaged(block.place, "is too short")
+        if begin + count <= len(block.head):
+            return block.head[begin : begin + count]
+        return self.read(block.place + begin, count)
 
     def kind(self, place: int) -> str:
         """Return the type of the block at a place."""
-        return self.bytes(place, 4)[2:].decode("latin-1")
+        return self.read(place, 4)[2:].decode("latin-1")
 
     def chain(self, place: int, kind: str) -> Iterator[Block]:
         """Give a block and those that its first link leads to, each once in a file."""
@@ -102,10 +119,7 @@ class Blocks:
 
     def unpack(self, block: Block, layout: str, offset: int = 0) -> tuple[Any, ...]:
         """Return numbers from the content of a block; ``layout`` as `struct` has it."""
-        size, begin = struct.calcsize(layout), block.content + offset
-        if begin + size > block.end:
-            raise self.damaged(block.place, "is too short")
-        return struct.unpack(layout, self.bytes(begin, size))
+        return struct.unpack(layout, self.part(block, offset, struct.calcsize(layout)))
 
     def text(self, place: int) -> str:
         """Return a text, or that of the element TX of a markup; nothing of 0.
@@ -117,7 +131,7 @@ class Blocks:
         block = self.block(place, "TX", "MD")
         if block.end - block.content > LONGEST_TEXT:
             raise self.damaged(place, f"is a text of more than {LONGEST_TEXT} bytes")
-        content = self.bytes(block.content, block.end - block.content)
+        content = self.part(block, 0, block.end - block.content)
         text = content.split(b"\0")[0].decode("utf-8", errors="backslashreplace")
         if block.kind == "TX":
             return text

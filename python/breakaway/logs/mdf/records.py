@@ -143,7 +143,7 @@ def _chunks(blocks: Blocks, place: int, budget: Budget) -> Iterator[bytes]:
             yield _unpacked(blocks, block, budget)
             continue
         for begin in range(block.content, block.end, CHUNK_BYTES):
-            yield blocks.bytes(begin, min(CHUNK_BYTES, block.end - begin))
+            yield blocks.read(begin, min(CHUNK_BYTES, block.end - begin))
 
 
 def _data_blocks(blocks: Blocks, place: int) -> Iterator[Block]:
@@ -175,7 +175,7 @@ def _unpacked(blocks: Blocks, block: Block, budget: Budget) -> bytes:
         )
     budget.take(f"the packed block at byte {block.place}", 2 * size)
     unpacker = zlib.decompressobj()
-    data = unpacker.decompress(blocks.bytes(begin, packed_size), size + 1)
+    data = unpacker.decompress(blocks.read(begin, packed_size), size + 1)
     if len(data) != size:
         raise blocks.damaged(block.place, f"claims {size} bytes, and holds more or fewer")
     if way == DEFLATED:
