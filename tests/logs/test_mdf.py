@@ -386,6 +386,6 @@ def test_many_channels_are_read_in_time(tmp_path: Path) -> None:
         following = maker.channel(f"c{k}", following, first_byte=0)
     group = maker.group(following, 20, 8)
     path = maker.finish(tmp_path / "many.mf4", (group, maker.block("DT", [], bytes(160)), 0))
-    begin = time.perf_counter()
+    begin = time.process_time()
     assert len(read(path).channels) == 20_000
-    assert time.perf_counter() - begin < 5.0
+    assert time.process_time() - begin < 5.0

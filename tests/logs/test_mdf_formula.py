@@ -106,10 +106,10 @@ def test_refuses(text: str, words: str) -> None:
     ],
 )
 def test_limits(text: str, words: str) -> None:
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(FormulaError, match=words):
         parse(text)
-    assert time.perf_counter() - begin < 0.5
+    assert time.process_time() - begin < 0.5
 
 
 def test_every_function_is_that_of_its_name() -> None:

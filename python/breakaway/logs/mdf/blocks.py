@@ -23,7 +23,7 @@ FIRST = 64
 HEAD_BYTES = 256
 
 MOST_LINKS = 1_000_000
-LONGEST_TEXT = 1_000_000
+LONGEST_TEXT = 2000
 """Most links, and most bytes of a text that is read, of one block."""
 
 _MARKUP_TEXT = re.compile(r"<TX\b[^<>]*>([^<>]*)</TX>")
@@ -63,6 +63,7 @@ class Blocks:
         self._file = file
         self._size = file.seek(0, 2)
         self._seen: set[int] = set()
+        self._texts: dict[int, str] = {}
 
     def read(self, place: int, count: int) -> bytes:
         """Return bytes of the file."""
@@ -128,6 +129,11 @@ class Blocks:
         """
         if not place:
             return ""
+        if place not in self._texts:  # many channels may share one
+            self._texts[place] = self._text(place)
+        return self._texts[place]
+
+    def _text(self, place: int) -> str:
         block = self.block(place, "TX", "MD")
         if block.end - block.content > LONGEST_TEXT:
             raise self.damaged(place, f"is a text of more than {LONGEST_TEXT} bytes")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from breakaway.errors import LogError
 from breakaway.logs.mdf.blocks import FIRST, Block, Blocks
 
 MASTERS, VIRTUAL = (2, 3), (3, 6)
@@ -13,6 +14,9 @@ MASTERS, VIRTUAL = (2, 3), (3, 6)
 OF_VARIABLE_LENGTH = 1
 TIME = 1
 """What a master channel counts: time, not angle, distance or index."""
+
+MOST_CHANNELS = 200_000
+"""Most channels of a file, all groups together."""
 
 VLSD_GROUP, ALL_INVALID, SOME_INVALID = 1, 1, 2
 """Flags of groups and of channels."""
@@ -107,7 +111,7 @@ def data_groups(blocks: Blocks) -> list[DataGroup]:
         A block is damaged.
 
     """
-    found, number = [], 0
+    found, number, channels = [], 0, 0
     for block in blocks.chain(blocks.block(FIRST, "HD").link(0), "DG"):
         (id_bytes,) = blocks.unpack(block, "<B")
         groups = []
@@ -115,6 +119,11 @@ def data_groups(blocks: Blocks) -> list[DataGroup]:
             group = _group(blocks, inner, number)
             groups.append(group)
             number += not group.is_vlsd
+            channels += len(group.channels)
+            if channels > MOST_CHANNELS:
+                raise LogError(
+                    f"{blocks.name}: has more than {MOST_CHANNELS} channels; export fewer of them"
+                )
         if id_bytes not in (0, 1, 2, 4, 8) or (not id_bytes and len(groups) > 1):
             raise blocks.damaged(block.place, f"numbers {len(groups)} groups by {id_bytes} bytes")
         found.append(DataGroup(id_bytes, block.link(2), tuple(groups)))
