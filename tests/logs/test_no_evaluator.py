@@ -9,11 +9,12 @@ import sys
 from pathlib import Path
 
 import asammdf
+import h5py
 import numpy as np
 import pytest
 from asammdf.blocks import v4_constants as v4c
 from asammdf.blocks.v4_blocks import ChannelConversion
-from tests.logs.conftest import WRITERS
+from tests.logs.conftest import WRITERS, write_hdf5
 from tests.logs.mdf_files import write
 
 import breakaway
@@ -52,6 +53,19 @@ def write_formula(path: Path, formula: str) -> None:
     write(path.parent, signals).rename(path)
 
 
+def write_opaque(path: Path) -> None:
+    """Write a log with data whose type is told by a text, on its own and in a table."""
+    write_hdf5(path)
+    with h5py.File(path, "r+") as file:
+        kind = h5py.h5t.create(h5py.h5t.OPAQUE, 8)
+        kind.set_tag(b"NUMPY:(2,)f4")
+        table = h5py.h5t.create(h5py.h5t.COMPOUND, 8)
+        table.insert(b"member", 0, kind)
+        rows = h5py.h5s.create_simple((4,))
+        h5py.h5d.create(file.id, b"opaque", kind, rows)
+        h5py.h5d.create(file.id, b"table", table, rows)
+
+
 def test_reading_does_nothing_but_read(tmp_path: Path) -> None:
     warm, folder = tmp_path / "warm", tmp_path / "folder"
     for place in (warm, folder):
@@ -60,13 +74,14 @@ def test_reading_does_nothing_but_read(tmp_path: Path) -> None:
             write_one(place / name)
         for name, formula in FORMULAS.items():
             write_formula(place / name, formula)
+        write_opaque(place / "opaque.h5")
     printed = happened("ours", warm, folder)
     assert [line for line in printed if line.startswith("event: ")] == []
     last = printed[len(printed) // 2 :]
     assert "understood.mf4: 600 N" in last
     assert any("its formula 'marker(X1)' is not applied" in line for line in last)
     assert any("its formula 'X1 & 3' is not applied" in line for line in last)
-    assert sum(line.endswith(": 39.7123 N") for line in last) == len(WRITERS)
+    assert sum(line.endswith(": 39.7123 N") for line in last) == len(WRITERS) + 1
 
 
 @pytest.mark.parametrize("event", ["compile", "exec", "pickle.find_class"])
