@@ -14,7 +14,9 @@ import warnings
 from collections.abc import Callable
 from pathlib import Path
 
-HARMLESS = {"builtins.id", "object.__getattr__", "sys._getframe"}
+HARMLESS = {"array.__new__", "builtins.id", "object.__getattr__", "sys._getframe"}
+FREE_MEMORY = ("/proc/meminfo", "/proc/self/cgroup", "/sys/fs/cgroup/")
+"""Where it is told how much memory is free."""
 
 
 def ours(path: Path) -> None:
@@ -69,12 +71,14 @@ def main(reader: str, warm: Path, folder: Path) -> None:
 
 
 def _is_of_the_file(event: str, arguments: tuple[object, ...], place: str) -> bool:
-    """Tell whether the event is the opening of the file itself, for reading."""
+    """Tell whether the file itself is opened to be read, or what tells the free memory."""
     if event != "open":
         return False
     name, _, flags = arguments
     is_reading = not int(str(flags)) & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
-    return is_reading and (isinstance(name, int) or str(name) == place)
+    return is_reading and (
+        isinstance(name, int) or str(name) == place or str(name).startswith(FREE_MEMORY)
+    )
 
 
 if __name__ == "__main__":
