@@ -3,11 +3,9 @@
 import datetime
 import json
 import sys
-import warnings
 from pathlib import Path
 from typing import Any
 
-import asammdf
 import h5py
 import mcap.writer
 import numpy as np
@@ -50,15 +48,6 @@ def test_names_the_extra_of_a_missing_package(
     path.write_bytes(b"something")
     with pytest.raises(LogError, match=rf"motor\.{suffix}: reading .* needs {extra}"):
         read_log(path)
-
-
-def test_names_the_extra_for_mdf(every_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "asammdf", None)
-    if every_file.suffix == ".mf4":
-        with pytest.raises(LogError, match=r"needs asammdf; .*'breakaway\[mdf\]'"):
-            read_log(every_file)
-    else:
-        assert read_log(every_file).rows == 200
 
 
 # Parquet
@@ -242,58 +231,6 @@ def test_tdms_with_a_time_channel_and_a_mapping(tmp_path: Path) -> None:
     np.testing.assert_allclose(log.position_m, np.arange(50) * -1e-3)
     with pytest.raises(LogError, match=r"column 't_s' is missing; .*Rig/Clock"):
         read_log(path, {"channels": channels})
-
-
-# MDF
-
-
-def mdf(folder: Path, *groups: list[asammdf.Signal], **options: Any) -> Path:
-    path = folder / "motor.mf4"
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        with asammdf.MDF(**({"version": "4.10"} | options)) as file:
-            for group in groups:
-                file.append(group)
-            written = file.save(path.with_suffix(""), overwrite=True)
-    return Path(written)
-
-
-def signal(name: str, t_s: np.ndarray, unit: str = "", scale: float = 1.0) -> asammdf.Signal:
-    return asammdf.Signal(scale * t_s, t_s, unit=unit, name=name)
-
-
-def test_mdf_groups_have_clocks_of_their_own(tmp_path: Path) -> None:
-    late = 3.0 + np.arange(40) / 50.0
-    path = mdf(
-        tmp_path,
-        [signal("position", T_S, "mm"), signal("load", T_S, "N")],
-        [signal("force", late, "N", 2.0), signal("load", late, "N")],
-    )
-    log = read_log(path)
-    np.testing.assert_allclose(log.channels["position_m"].t_s, T_S)
-    np.testing.assert_allclose(log.channels["force_n"].t_s, late)
-    np.testing.assert_allclose(log["force_n"], 2.0 * late)
-    assert set(log.ignored_columns) == {"0/load", "1/load"}
-    channels = {"force_n": {"from": "1/load"}}
-    np.testing.assert_allclose(read_log(path, {"channels": channels}).force_n, late)
-
-
-def test_mdf_3_is_refused(tmp_path: Path) -> None:
-    path = mdf(tmp_path, [signal("position", T_S, "m")], version="3.30")
-    with pytest.raises(LogError, match=r"is MDF version 3\.\d+; only 4 is read: convert it"):
-        read_log(path)
-
-
-def test_mdf_blocks_in_a_ring_are_refused(every_file: Path, tmp_path: Path) -> None:
-    if every_file.suffix != ".mf4":
-        pytest.skip("is no MDF file")
-    data = bytearray(every_file.read_bytes())
-    group = data.index(b"##DG")
-    data[group + 24 : group + 32] = group.to_bytes(8, "little")  # the next group is this one
-    path = tmp_path / "ring.mf4"
-    path.write_bytes(data)
-    with pytest.raises(LogError, match=rf"the block at byte {group} leads to itself"):
-        read_log(path)
 
 
 # MCAP

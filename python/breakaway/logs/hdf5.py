@@ -9,6 +9,7 @@ import numpy as np
 
 from breakaway.errors import LogError
 from breakaway.logs.budget import Budget
+from breakaway.logs.hdf5_types import is_opaque
 from breakaway.logs.raw import DEFLATE_RATIO, RawFile, check_size, guarded, need
 
 DEEPEST_GROUP = 8
@@ -51,7 +52,10 @@ def _read(path: Path, budget: Budget, separator: str) -> RawFile:
     raw = RawFile(path)
     with h5py.File(path, "r") as file:
         for name, dataset in _datasets(h5py, path, file, separator):
-            _add(raw, name, dataset, separator)
+            if is_opaque(h5py, dataset.id.get_type()):
+                raw.unreadable[name] = "is of opaque data; it must be real numbers"
+            else:
+                _add(raw, name, dataset, separator)
     return raw
 
 
