@@ -12,6 +12,7 @@ from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.actuator import FeedAxis, Piezo
 from breakaway.scenario.files import load_method, load_population
 from breakaway.scenario.method import Method
+from breakaway.scenario.model import Name, Text
 from breakaway.scenario.population import Law, PartPopulation
 from breakaway.studies.study import StudyModel
 from breakaway.trials import scenario_of
@@ -150,9 +151,9 @@ class Tuning(StudyModel):
 
     kind: Literal["tune"] = "tune"
     """What this is."""
-    name: str = "tuning"
+    name: Name = "tuning"
     """A name for tables and figures."""
-    description: str = ""
+    description: Text = ""
     """What the tuning is for."""
     population: Annotated[PartPopulation, BeforeValidator(_population)]
     """The parts: the name of a preset, the path of a file (from the tuning's own folder), or its
@@ -162,7 +163,7 @@ class Tuning(StudyModel):
     its tables."""
     laws: Annotated[list[Law], Field(min_length=1)] = Field(default_factory=_lugre)
     """Friction laws of the joints. Every score is that of the law where it is worst."""
-    objectives: Annotated[list[str], Field(min_length=1, max_length=4)]
+    objectives: Annotated[list[Name], Field(min_length=1, max_length=4)]
     """Scores that are to become good: shares become large, quantiles of metrics small."""
     constraints: Annotated[dict[str, ScoreBound], BeforeValidator(_bounds)] = Field(
         default_factory=dict
