@@ -14,6 +14,8 @@ LONGEST_NAME = 100
 """Most characters of a name: file names and identifiers made of one stay within 255 bytes."""
 LONGEST_VALUE = 80
 """Most characters of a value in a message."""
+LONGEST_LABEL = 40
+"""Most characters of a name at an axis: figures are 7 inches wide."""
 LONGEST_LINE = 2000
 """Most characters of a line on a terminal that is no table."""
 
@@ -195,6 +197,18 @@ def figure(text: str) -> str:
 
     """
     return visible(text).replace("$", r"\$")
+
+
+def label(text: str) -> str:
+    """Give a name for an axis or a legend of a figure: as ``figure`` does, and not too long.
+
+    Examples
+    --------
+    >>> label("steady feed"), len(label("x" * 100))
+    ('steady feed', 40)
+
+    """
+    return figure(text if len(text) <= LONGEST_LABEL else f"{text[: LONGEST_LABEL - 1]}…")
 
 
 def _escape(found: re.Match[str]) -> str:

@@ -101,16 +101,15 @@ def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
     if kind == "value_error":
         reason = context["error"]
         return str(reason) if not names else f"{field}.{reason}"
+    remedy = _wanted(owner, names[-1] if names else "")
     bound = next((key for key in _SIGNS if key in context), None)
     if bound is not None:
         limit = context[bound]
-        remedy = _wanted(owner, names[-1] if names else "")
         return f"{field}: {shown(value)} is not {_SIGNS[bound]} {limit:g}; give {remedy}"
     if kind == "finite_number":
-        return f"{field}: {shown(value)} is not finite; give {_wanted(owner, names[-1])}"
+        return f"{field}: {shown(value)} is not finite; give {remedy}"
     known = _TYPE_NAMES.get(kind, "").format(**context)
     expected = known or detail["msg"][:1].lower() + detail["msg"][1:]
-    remedy = _wanted(owner, names[-1] if names else "")
     return f"{field}: {shown(value)} is not {expected}; give {remedy}"
 
 
@@ -183,8 +182,8 @@ def _wrong_kind(field: str, value: object, context: Mapping[str, Any]) -> str:
     tag = str(context.get("discriminator", "kind")).strip("'")
     expected = context.get("expected_tags")
     if expected is None:
-        given = shown(sorted(value) if isinstance(value, Mapping) else value)
-        return f"{field}.{tag}: is missing; say which kind this is (the keys given are {given})"
+        keys = shown(sorted(value) if isinstance(value, Mapping) else value)
+        return f"{field}.{tag}: is missing; say which kind this is (the keys given are {keys})"
     given = context.get("tag")
     near = difflib.get_close_matches(str(given), expected.replace("'", "").split(", "), n=1)
     hint = f"; did you mean {near[0]!r}?" if near else ""
