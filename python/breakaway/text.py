@@ -87,12 +87,12 @@ def shown(value: object) -> str:
     return _cut(repr(value), LONGEST_VALUE)
 
 
-def named(name: str) -> str:
+def brief(name: str) -> str:
     r"""Give a name out of a file, such as that of a column, for a message: one line, not too long.
 
     Examples
     --------
-    >>> print(named("force\n(N)"))
+    >>> print(brief("force\n(N)"))
     force\n(N)
 
     """

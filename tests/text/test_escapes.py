@@ -54,7 +54,7 @@ def test_lines_and_values_end() -> None:
     assert len(text.terminal("x" * 10**6)) < 2100
     assert len(text.shown("\x1b" * 10**6)) < 400
     assert len(text.shown(list(range(10**5)))) < 120
-    assert len(text.named("x" * 10**6)) < 120
+    assert len(text.brief("x" * 10**6)) < 120
     assert text.shown("\u202e") == r"'\u202e'"
 
 

@@ -37,9 +37,9 @@ def _source(name: str) -> str:
 
 
 def _finalized(value: object) -> object:
-    return (
-        visible_lines(value) if isinstance(value, str) and not isinstance(value, Markup) else value
-    )
+    if isinstance(value, Markup) or not isinstance(value, str):
+        return value
+    return visible_lines(value)
 
 
 def inline_svg(path: Path) -> Markup:

@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from breakaway.errors import ScenarioError
-from breakaway.text import LONGEST_NAME, named, shown, visible
+from breakaway.text import LONGEST_NAME, brief, shown, visible
 
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
@@ -84,7 +84,7 @@ def explain(error: ValidationError, model: type[BaseModel]) -> str:
 
 
 def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
-    path = [named(str(key)) for key in detail["loc"]]
+    path = [brief(str(key)) for key in detail["loc"]]
     value = detail.get("input")
     context = detail.get("ctx", {})
     kind = detail["type"]

@@ -15,10 +15,13 @@ from breakaway.scenario.method import Method
 from breakaway.scenario.model import Name, Text
 from breakaway.scenario.population import Law, PartPopulation
 from breakaway.studies.study import StudyModel
+from breakaway.text import LONGEST_NAME, shown
 from breakaway.trials import scenario_of
 from breakaway.tuning.numbers import check_number, number_of, with_numbers
 from breakaway.tuning.scores import PIEZO_METRICS, SHARES, ScoreKind, score_kind
 
+TUNED_LAST = "_tuned_10000"
+"""The longest that a tuned method has after its name."""
 TEST_FIRST, TEST_RUNS = 1_000_000, 1000
 """Unseen parts where a tuning does not say which."""
 
@@ -231,6 +234,7 @@ class Tuning(StudyModel):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
+        _check_name(self.method.name)
         _check_parts(self)
         for path, span in self.tune.items():
             check_number(self.method, path, {"low": span.low, "high": span.high})
@@ -245,6 +249,16 @@ class Tuning(StudyModel):
                     f"method: does not fit the population under the law {law}: {error}"
                 ) from None
         return self
+
+
+def _check_name(name: str) -> None:
+    """Raise unless a tuned method can have a longer one."""
+    most = LONGEST_NAME - len(TUNED_LAST)
+    if len(name) > most:
+        raise StudyError(
+            f"method.name: {shown(name)} has {len(name)} characters; tuned methods are named by it "
+            f"and {TUNED_LAST[:6]!r} or more: give a name of at most {most} characters"
+        )
 
 
 def _check_parts(tuning: Tuning) -> None:
