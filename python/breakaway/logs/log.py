@@ -258,8 +258,9 @@ class Log:
         ignored = ", ".join(map(brief, self.ignored_columns[:20]))
         raise LogError(
             f"{self.name}: there is no channel '{brief(name)}'; present are "
-            f"{', '.join(self.channels)}{f' (columns not read: {ignored})' if ignored else ''}; name its column in a "
-            f'mapping, or take another channel for it with log.using({name}="{other}")'
+            f"{', '.join(self.channels)}{f' (columns not read: {ignored})' if ignored else ''}; "
+            f"name its column in a mapping, or take another channel for it with "
+            f'log.using({brief(name)}="{other}")'
         )
 
     def check_increasing(self) -> None:

@@ -126,8 +126,8 @@ must be one of N, mN, uN, kN, MN, lbf, kgf
     found = next((u for u in _UNITS if plain(u.symbol) == plain(symbol)), None)
     if found is None:
         raise LogError(
-            f"channel '{channel}': the unit '{brief(symbol)}' is unknown; it must be one of {known}; of "
-            "any other unit, state the SI value of 1 as `scale`"
+            f"channel '{channel}': the unit '{brief(symbol)}' is unknown; it must be one of "
+            f"{known}; of any other unit, state the SI value of 1 as `scale`"
         )
     if found.dimension != dimension:
         raise LogError(

@@ -10,10 +10,10 @@ import numpy as np
 
 from breakaway.errors import ScenarioError
 from breakaway.scenario.distribution import Distribution
-from breakaway.scenario.model import Model
+from breakaway.scenario.model import Model, Name
 from breakaway.text import shown
 
-Level = bool | int | float | str
+Level = bool | int | float | Name
 """A value that is swept."""
 
 _DISTRIBUTIONS: dict[str, type[Model]] = {
@@ -98,7 +98,9 @@ def _levels(path: str, values: object) -> list[Level]:
             "{ from = ..., to = ..., count = ... }"
         )
     for level in levels:
-        if not isinstance(level, Level) or (isinstance(level, float) and not isfinite(level)):
+        if not isinstance(level, bool | int | float | str) or (
+            isinstance(level, float) and not isfinite(level)
+        ):
             raise ValueError(
                 f"{path}: {shown(level)} is not a finite number, a text, true or false"
             )
