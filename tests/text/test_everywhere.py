@@ -26,6 +26,8 @@ from typer.testing import CliRunner
 import breakaway as bk
 from breakaway import text
 from breakaway.cli.app import app
+from breakaway.plots.design import plot_bode
+from breakaway.plots.style import save_figure
 from breakaway.scenario.model import Model, Name
 
 CODE = '*/ int marker; /* ??/ "; marker \\'
@@ -183,9 +185,12 @@ def test_run(scenario: bk.Scenario, scenario_file: Path, tmp_path: Path) -> None
 
 
 def test_design(tmp_path: Path) -> None:
-    scenario = bk.load_scenario("paper_as_computed").with_({"timing.duration_s": 0.01})
-    bk.save_scenario(scenario.with_(name=MARKUP), tmp_path / "scenario.toml")
-    assert MARKUP in succeed("design", tmp_path / "scenario.toml", "--out", tmp_path / "out")
+    scenario = bk.load_scenario("paper_as_computed_vibration").with_(name=MARKUP)
+    bk.save_scenario(scenario, tmp_path / "scenario.toml")
+    assert MARKUP in succeed("design", tmp_path / "scenario.toml")
+    pid = bk.design.SampledPid(bk.design.PidGains(kp=3137.3e3, ki=1283289e3, kd=724.2), 1e-5)
+    loops = bk.design.sampled_loops(pid, scenario.joint, 1.0)
+    save_figure(plot_bode(loops, f"{MARKUP}: {CODE}"), tmp_path / "bode.svg")
     check_folder(tmp_path)
 
 
