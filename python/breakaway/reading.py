@@ -16,6 +16,8 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Any
 
+from breakaway.text import shown, visible
+
 MOST_TEXT_BYTES = 4 * 2**20
 """Most bytes of a TOML file: a joint file with all its draws has under 200 kB."""
 MOST_WORDS = 100_000
@@ -102,9 +104,26 @@ def parse_toml(text: str) -> dict[str, Any]:
     """
     _check_limits(text)
     try:
-        return tomllib.loads(text)
+        values = tomllib.loads(text)
+        _check_keys(values)
     except RecursionError:  # not to be had within the limits
         raise ValueError("tables or lists are too deep within each other") from None
+    return values
+
+
+def _check_keys(value: object) -> None:
+    """Refuse keys that a quoted one may be: of many lines, with control characters, without end."""
+    if isinstance(value, list):
+        for inner in value:
+            _check_keys(inner)
+    if not isinstance(value, dict):
+        return
+    for key, inner in value.items():
+        if visible(key) != key or len(key) > LONGEST_WORD:
+            raise ValueError(
+                f"key {shown(key)}: has control characters, or more than {LONGEST_WORD} characters"
+            )
+        _check_keys(inner)
 
 
 _TOKEN = re.compile(

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import breakaway as bk
+from breakaway.text import shown
 
 NASTY = [
     None,
@@ -53,8 +54,10 @@ def fits(site, value):
     schema = site.schema
     if "enum" in schema or "const" in schema:
         return value in schema.get("enum", [schema.get("const")])
-    if schema.get("type") in ("string", "boolean"):
-        return isinstance(value, {"string": str, "boolean": bool}[schema["type"]])
+    if schema.get("type") == "string":
+        return isinstance(value, str) and len(value) >= schema.get("minLength", 0)
+    if schema.get("type") == "boolean":
+        return isinstance(value, bool)
     if schema.get("type") not in ("number", "integer"):
         return None
     kinds = int if schema["type"] == "integer" else int | float
@@ -92,12 +95,12 @@ def check_refusal(site, value, message):
     own = [line for line in lines if line.startswith((f"{site.dotted}:", f"{site.dotted}."))]
     if fits(site, value) is False:
         assert len(own) == len(lines) == 1, message
-        assert repr(value) in message or repr(str(value)) in message, message
+        assert shown(value) in message or shown(str(value)) in message, message
         for words in wanted_words(site):
             assert words in message, message
     elif fits(site, value) is None:  # a table: it, or a key in it, is wrong or missing
         assert own, message
-        assert repr(value) in message or "is missing" in message or "known key" in message, message
+        assert shown(value) in message or "is missing" in message or "known key" in message, message
     else:
         assert site.name in message or repr(float(value)) in message, message
 

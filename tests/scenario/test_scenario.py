@@ -111,6 +111,7 @@ def test_with_a_misspelled_field(paper):
 # Files
 
 FLOATS = st.floats(min_value=5e-324, max_value=1.7976931348623157e308)
+READABLE = st.characters(exclude_categories=["Cc", "Cf", "Cn", "Cs", "Zl", "Zp"])
 
 
 @given(
@@ -120,14 +121,16 @@ FLOATS = st.floats(min_value=5e-324, max_value=1.7976931348623157e308)
     damping_n_s_per_m=st.just(0.0) | FLOATS,
     residual_n=st.none() | FLOATS,
     gains=st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=3, max_size=3),
-    name=st.text(),
+    name=st.text(READABLE, min_size=1, max_size=100),
+    description=st.text(),
     seed=st.integers(0, 2**63 - 1),
 )
-def test_toml_reads_back_bit_for_bit(pair, gains, name, seed, **joint):
+def test_toml_reads_back_bit_for_bit(pair, gains, name, description, seed, **joint):
     kp, ki, kd = gains
     joint["stiffness_n_per_m"], mass_kg = sorted(pair)  # a bristle that the period resolves
     scenario = bk.Scenario(
         name=name,
+        description=description,
         seed=seed,
         joint=bk.Lugre(**joint, stribeck_velocity_m_per_s=0.1, engagement_length_m=0.1),
         part=bk.Part(mass_kg=mass_kg),
@@ -396,6 +399,8 @@ def conforms(value, schema, root):
             "required": lambda rule=rule: set(rule) <= set(value),
             "minimum": lambda rule=rule: value >= rule,
             "maximum": lambda rule=rule: value <= rule,
+            "minLength": lambda rule=rule: len(value) >= rule,
+            "maxLength": lambda rule=rule: len(value) <= rule,
             "exclusiveMinimum": lambda rule=rule: value > rule,
             "exclusiveMaximum": lambda rule=rule: value < rule,
         }

@@ -90,7 +90,7 @@ def test_robustness_shows_the_trail(tmp_path, failures):
     assert axes.get_yscale() == "log"
     steps = {text.get_text() for text in axes.texts}
     assert {str(k + 1) for k in range(len(failures))} | {"asked for: 0.05"} == steps
-    assert "a [b] $c" in figure.get_suptitle()
+    assert r"a [b] \$c" in figure.get_suptitle()
 
 
 def test_sensitivity_has_bars_for_each_input(tmp_path):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated, Any
 
 import typer
@@ -16,7 +15,7 @@ from breakaway.cli.identify import identify
 from breakaway.cli.reproduce import reproduce
 from breakaway.cli.run import run
 from breakaway.cli.scenarios import init, presets, schema
-from breakaway.cli.show import ClosedOutput, say
+from breakaway.cli.show import ClosedOutput, say, say_aside
 from breakaway.cli.study import study
 from breakaway.cli.tune import tune
 from breakaway.errors import BreakawayError
@@ -49,12 +48,12 @@ class Commands(TyperGroup):
         try:
             return super().invoke(ctx)
         except BreakawayError as error:
-            print(f"error: {error}", file=sys.stderr)
+            say_aside(f"error: {error}")
             raise typer.Exit(error.exit_code) from None
         except ClosedOutput as error:
             raise typer.Exit(error.exit_code) from None
         except KeyboardInterrupt:
-            print("interrupted", file=sys.stderr)
+            say_aside("interrupted")
             raise typer.Exit(INTERRUPTED) from None
 
 

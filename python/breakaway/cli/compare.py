@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.cli.progress import shown_progress
-from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.cli.show import Sheet, busy, say, say_aside, say_json
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -89,11 +89,11 @@ def compare(
                 resume=resume,
                 threads=threads,
                 progress=progress,
-                notice=_notice,
+                notice=say_aside,
             )
     except (KeyboardInterrupt, OutputError):
         if (out / "manifest.json").exists():
-            _notice(f"finished parts are kept; go on with: {_again(out)}")
+            say_aside(f"finished parts are kept; go on with: {_again(out)}")
         raise
     if json:
         say_json(_document(done))
@@ -109,10 +109,6 @@ def _again(out: Path) -> str:
     if not given or given[0] != "compare":  # called otherwise than as a command
         given = ["compare", "--out", str(out)]
     return shlex.join(["breakaway", *given, "--resume"])
-
-
-def _notice(sentence: str) -> None:
-    print(sentence, file=sys.stderr)
 
 
 @contextmanager

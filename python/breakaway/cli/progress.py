@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from breakaway.cli.interrupts import raise_if_interrupted
+from breakaway.text import visible
 
 if TYPE_CHECKING:
     from breakaway.studies import StudyProgress
@@ -39,7 +40,7 @@ def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None]]:
     def report(at: StudyProgress) -> None:
         raise_if_interrupted()
         told = progress_in_words(at, time.monotonic() - began)
-        doing = f"{name}: {at.doing}" if name else at.doing
+        doing = visible(f"{name}: {at.doing}" if name else at.doing)
         bar.update(task, completed=at.runs_done, total=at.runs_max, description=doing, told=told)
         bar.start() if at.runs_done < at.runs_max else bar.stop()
 

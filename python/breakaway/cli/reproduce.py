@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from breakaway.cli.progress import shown_progress
-from breakaway.cli.show import Sheet, say
+from breakaway.cli.show import Sheet, say, say_aside
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def reproduce(
     """
     from breakaway.report.reproduction import reproduce as reproduce_paper
 
-    done = _in_full(out) if full else reproduce_paper(out, _progress)
+    done = _in_full(out) if full else reproduce_paper(out, say_aside)
     header = [str(name) for name in done.header]
     shown = Sheet("", header, prose=header[:-1])
     for row in done.table:
@@ -46,15 +46,11 @@ def _in_full(out: Path) -> Reproduction:
 
     try:
         with shown_progress() as report:
-            full = FullSurvey(progress=report, notice=_progress)
-            return reproduce_paper(out, _progress, full)
+            full = FullSurvey(progress=report, notice=say_aside)
+            return reproduce_paper(out, say_aside, full)
     except (KeyboardInterrupt, OutputError):
         if (out / "figure_10").exists():
-            _progress(
+            say_aside(
                 f"finished levels are kept; go on with: breakaway reproduce --full --out {out}"
             )
         raise
-
-
-def _progress(step: str) -> None:
-    typer.echo(step, err=True)

@@ -19,6 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from breakaway.errors import OutputError
+from breakaway.text import terminal, visible, visible_lines
 
 PIPED_WIDTH = 10_000
 """Width, in characters, for output that no terminal shows: lines are never broken there."""
@@ -36,7 +37,7 @@ class ClosedOutput(Exception):  # noqa: N818 - an end, not an error
 def say(*parts: RenderableType) -> None:
     """Print text or tables: whole values always, colors and line breaks only on a terminal.
 
-    Strings are plain text, without markup.
+    Strings are plain text, without markup; what a terminal would obey is shown as an escape.
 
     Raises
     ------
@@ -53,12 +54,17 @@ def say(*parts: RenderableType) -> None:
     console = _Console(file=collected, highlight=False)
     available = console.width if sys.stdout.isatty() else PIPED_WIDTH
     for part in parts:
-        shown = Text(part) if isinstance(part, str) else part
+        shown = Text(terminal(part)) if isinstance(part, str) else part
         wide = console.options.update(width=PIPED_WIDTH)
         # A terminal that is too narrow for the numbers breaks the lines by itself.
         console.width = max(available, Measurement.get(console, wide, shown).minimum)
         console.print(shown)
     _write("\n".join(line.rstrip() for line in collected.getvalue().split("\n")))
+
+
+def say_aside(sentence: str) -> None:
+    """Print a sentence to the standard error, as plain as `say` does."""
+    print(terminal(sentence), file=sys.stderr)
 
 
 def say_json(content: object) -> None:
@@ -106,25 +112,26 @@ class Sheet(Table):
         numbers: Sequence[str] = (),
         prose: Sequence[str] = (),
     ) -> None:
-        super().__init__(
-            title=title or None, box=SIMPLE_HEAD, title_justify="left", title_style="bold"
-        )
+        heading = Text(visible(title), style="bold") if title else None
+        super().__init__(title=heading, box=SIMPLE_HEAD, title_justify="left")
         for name in columns:
+            shown = Text(visible(name))
             self.add_column(
-                name,
+                shown,
                 justify="right" if name in numbers else "left",
                 no_wrap=name not in prose,
                 overflow="fold",
-                min_width=PROSE_WIDTH if name in prose else cell_len(name),
+                min_width=PROSE_WIDTH if name in prose else cell_len(shown.plain),
             )
 
     def add(self, *cells: str) -> None:
         """Add a row of plain text."""
-        for column, cell in zip(self.columns, cells, strict=True):
+        texts = [visible_lines(cell) for cell in cells]
+        for column, cell in zip(self.columns, texts, strict=True):
             if column.no_wrap:
                 widest = max(cell_len(line) for line in cell.split("\n"))
                 column.min_width = max(column.min_width or 0, widest)
-        self.add_row(*(Text(cell) for cell in cells))
+        self.add_row(*map(Text, texts))
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,7 +10,7 @@ import typer
 
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
-from breakaway.cli.show import Sheet, say, say_json
+from breakaway.cli.show import Sheet, say, say_aside, say_json
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -56,11 +55,11 @@ def study(
     try:
         with shown_progress(asked.name) as progress:
             done = run_study(
-                asked, out, resume=resume, threads=threads, progress=progress, notice=_notice
+                asked, out, resume=resume, threads=threads, progress=progress, notice=say_aside
             )
     except (KeyboardInterrupt, OutputError):
         if (out / "manifest.json").exists():
-            _notice(
+            say_aside(
                 f"finished parts are kept; go on with: breakaway study {file} --out {out} --resume"
             )
         raise
@@ -77,10 +76,6 @@ def study(
     say(f"wrote {len(done.part_files)} parts to {out / 'parts'}")
     for path in files:
         say(f"wrote {path}")
-
-
-def _notice(sentence: str) -> None:
-    print(sentence, file=sys.stderr)
 
 
 def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,7 +10,7 @@ import typer
 
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
-from breakaway.cli.show import Sheet, say, say_json
+from breakaway.cli.show import Sheet, say, say_aside, say_json
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -57,12 +56,12 @@ def tune(
                 resume=resume,
                 threads=threads,
                 progress=_told(progress),
-                notice=_notice,
+                notice=say_aside,
             )
     except (KeyboardInterrupt, OutputError):
         if (out / "manifest.json").exists():
             more = "" if trials is None else f" --trials {trials}"
-            _notice(
+            say_aside(
                 f"finished trials are kept; go on with: breakaway tune {file} --out {out}{more} "
                 "--resume"
             )
@@ -80,10 +79,6 @@ def tune(
         say(f"note: {note}")
     for path in files:
         say(f"wrote {path}")
-
-
-def _notice(sentence: str) -> None:
-    print(sentence, file=sys.stderr)
 
 
 def _told(progress: Callable[[StudyProgress], None]) -> Callable[[TuningProgress], None]:

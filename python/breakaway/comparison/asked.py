@@ -15,6 +15,7 @@ from breakaway.batch.simulation import RUNS_MAX
 from breakaway.errors import StudyError
 from breakaway.scenario.files import load_method, load_population, preset_names
 from breakaway.scenario.method import Method
+from breakaway.scenario.model import Name
 from breakaway.scenario.population import LAWS, Law, PartPopulation
 from breakaway.studies.study import StudyModel
 
@@ -42,7 +43,7 @@ class Asked(StudyModel):
     """How many parts each method tries under each law."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Seed of parts, disturbances and noise."""
-    baselines: list[str] = Field(default_factory=list)
+    baselines: list[Name] = Field(default_factory=list)
     """Names of the methods that the others are measured against, by the best of them. Left out:
     all."""
     runs_per_part: Annotated[int, Field(ge=1)] = 5000

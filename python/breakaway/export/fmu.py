@@ -24,6 +24,7 @@ from breakaway.export.units import BASE_UNITS
 from breakaway.output import write_atomically
 from breakaway.resolution import resolve
 from breakaway.scenario.scenario import Scenario
+from breakaway.text import c_identifier
 
 Fmi = Literal["2", "3"]
 """Version of the standard."""
@@ -168,8 +169,8 @@ def _token(files: dict[str, str]) -> str:
 
 
 def _identifier(recording: Recording) -> str:
-    """A name that C allows."""
-    name = re.sub(r"[^A-Za-z0-9_]+", "_", recording.scenario.name).strip("_")
+    """A name that C and files allow."""
+    name = c_identifier(recording.scenario.name)
     return f"breakaway_{name}_{recording.what}" if name else f"breakaway_{recording.what}"
 
 

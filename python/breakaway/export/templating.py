@@ -7,9 +7,11 @@ from typing import Any
 
 import jinja2
 
+from breakaway.text import c_comment, markdown, xml
+
 
 def fill(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the template wants
-    """Fill a template. Nothing is escaped; a missing name is an error."""
+    """Fill a template. A text escapes by its filter, none by itself; a missing name is an error."""
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(_source),
         autoescape=False,
@@ -18,6 +20,7 @@ def fill(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the t
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+    environment.filters |= {"comment": c_comment, "markdown": markdown, "xml": xml}
     return environment.get_template(template).render(**context)
 
 

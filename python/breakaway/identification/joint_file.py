@@ -20,7 +20,7 @@ from breakaway.logs.log import Array, Log
 from breakaway.output import write_atomically
 from breakaway.scenario.distribution import Samples
 from breakaway.scenario.files import parse_toml
-from breakaway.scenario.model import Model, NotNegative, Positive
+from breakaway.scenario.model import Model, Name, NotNegative, Positive, Text
 
 DRAWS = 200
 """Joints that a file holds."""
@@ -40,14 +40,14 @@ class Settings(Model):
 class FitSettings(Model):
     """Settings of an output-error fit, as `breakaway.identify` names them."""
 
-    law: str
+    law: Name
     asymmetric: bool
     position_dependent: bool
-    motion: str
+    motion: Name
     repeats: list[list[float]]
     origin_m: float
     steps_per_row: Annotated[int, Field(ge=1)]
-    loss: str
+    loss: Name
     starts: Annotated[int, Field(ge=1)]
     seed: int
     complete: bool
@@ -56,14 +56,14 @@ class FitSettings(Model):
 class Provenance(Model):
     """Where the figures come from. ``log_sha256`` is absent for a log that was in no file."""
 
-    log: str
-    log_sha256: str | None = None
-    breakaway_version: str
-    method: str
+    log: Text
+    log_sha256: Name | None = None
+    breakaway_version: Name
+    method: Text
     settings: Settings | None = None
     fit: FitSettings | None = None
     samples: Annotated[int, Field(ge=1)]
-    notes: Annotated[list[str], Field(default_factory=list)]
+    notes: Annotated[list[Text], Field(default_factory=list)]
 
 
 class Part(Model):
@@ -96,7 +96,7 @@ class Draws(Model):
     standard errors and correlations give, of which values that no joint can have are drawn anew.
     """
 
-    source: str
+    source: Text
     seed: int
     values: dict[str, list[float]]
 
@@ -153,7 +153,7 @@ class JointFile(Model):
     interval: dict[str, list[float]]
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
-    not_identified: dict[str, str]
+    not_identified: dict[str, Text]
     draws: Draws | None = None
 
     @classmethod

@@ -14,6 +14,7 @@ from breakaway.logs.mapping import ChannelMapping, Mapping
 from breakaway.logs.names import file_unit, read_header, read_headers
 from breakaway.logs.raw import RawChannel, RawFile
 from breakaway.logs.units import Unit, si_symbol, stated, unit_of
+from breakaway.text import brief
 
 REQUIRED = {"position_m": "mm", "force_n": "N"}
 """What a file without a mapping must state -> the unit that the remedy shows."""
@@ -68,11 +69,11 @@ def _notes(pick: Pick, raw: RawFile) -> list[str]:
     notes = []
     if (pick.factor, pick.offset) != (1.0, 0.0):
         offset = f" {pick.offset:+g}" if pick.offset else ""
-        unit = f" (in {pick.unit})" if pick.unit else ""
-        notes.append(f"{pick.channel} = {pick.factor:.9g} * '{pick.column}'{unit}{offset}")
+        unit = f" (in {brief(pick.unit)})" if pick.unit else ""
+        notes.append(f"{pick.channel} = {pick.factor:.9g} * '{brief(pick.column)}'{unit}{offset}")
     word = read_header(pick.column, file_unit(raw, pick.column))
     if word is not None and word.word == "friction_force" and pick.channel == "force_n":
-        notes.append(f"column '{pick.column}' is read as force_n")
+        notes.append(f"column '{brief(pick.column)}' is read as force_n")
     return notes
 
 
@@ -84,7 +85,7 @@ def _stated(raw: RawFile) -> list[Pick]:
             continue
         if item.channel in picks:
             raise LogError(
-                f"columns '{picks[item.channel].column}' and '{item.name}' both give "
+                f"columns '{brief(picks[item.channel].column)}' and '{brief(item.name)}' both give "
                 f"'{item.channel}'; one must: delete or rename the other, or write a mapping"
             )
         picks[item.channel] = Pick(
@@ -125,8 +126,8 @@ def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> Unit:
     if header is not None and header.unit.symbol and stated(header.unit.symbol, channel):
         return header.unit
     raise LogError(
-        f"channel '{channel}': neither the file nor the name '{name}' states a unit; add it to "
-        f'the mapping, such as unit = "{si_symbol(channel)}"'
+        f"channel '{channel}': neither the file nor the name '{brief(name)}' states a unit; add it "
+        f'to the mapping, such as unit = "{si_symbol(channel)}"'
     )
 
 
@@ -161,9 +162,10 @@ class _Times:
         if not names:
             raise _missing(self.raw, "t_s", "time", "ms")
         if len(names) > 1:
+            first, second = map(brief, names[:2])
             raise LogError(
-                f"columns '{names[0]}' and '{names[1]}' both give 't_s'; one must: delete or "
-                f'rename the other, or write a mapping with time.from = "{names[0]}"'
+                f"columns '{first}' and '{second}' both give 't_s'; one must: delete or "
+                f'rename the other, or write a mapping with time.from = "{first}"'
             )
         return names[0]
 
@@ -183,14 +185,16 @@ def place(raw: RawFile, name: str) -> str:
     if len(ends) == 1:
         return ends[0]
     if ends:
-        raise LogError(f"'{name}' may be {' or '.join(ends[:5])}; give the whole name")
-    raise LogError(f"column '{name}' is missing; {present(raw, name)}; correct `from`")
+        raise LogError(
+            f"'{brief(name)}' may be {' or '.join(map(brief, ends[:5]))}; give the whole name"
+        )
+    raise LogError(f"column '{brief(name)}' is missing; {present(raw, name)}; correct `from`")
 
 
 def column(raw: RawFile, name: str) -> RawChannel:
     """Return a column, or raise `LogError` with the reason why it can not be read."""
     if name in raw.unreadable:
-        raise LogError(f"column '{name}'{_joint(raw.unreadable[name])}")
+        raise LogError(f"column '{brief(name)}'{_joint(raw.unreadable[name])}")
     return raw.channels[name]
 
 
@@ -202,8 +206,8 @@ def present(raw: RawFile, name: str) -> str:
     """Name the columns of a file, and the one nearest to ``name``."""
     lower = {other.lower(): other for other in raw.names}
     near = difflib.get_close_matches(name.lower(), lower, n=1)
-    nearest = f"the nearest present is '{lower[near[0]]}', of " if near else "present are "
-    names = [other[:80] for other in raw.names[:20]]
+    nearest = f"the nearest present is '{brief(lower[near[0]])}', of " if near else "present are "
+    names = [brief(other) for other in raw.names[:20]]
     more = ", ..." if len(raw.names) > 20 else ""
     return nearest + (", ".join(names) + more if names else "none")
 

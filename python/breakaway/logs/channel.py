@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from breakaway.errors import LogError
+from breakaway.text import visible
 
 Array = npt.NDArray[np.float64]
 
@@ -152,4 +153,4 @@ def named(source: str) -> Iterator[None]:
     try:
         yield
     except LogError as error:
-        raise LogError(f"{source}: {error}") from None
+        raise LogError(f"{visible(source)}: {error}") from None

@@ -16,6 +16,7 @@ from breakaway.logs import changes
 from breakaway.logs.channel import Array, Channel, checked, named
 from breakaway.logs.findings import Finding, find
 from breakaway.logs.units import dimension_of
+from breakaway.text import brief, visible
 
 __all__ = ["Array", "Log"]
 
@@ -181,8 +182,8 @@ class Log:
 
     @property
     def name(self) -> str:
-        """File name of the source, or ``log`` for arrays that never were in a file."""
-        return "log" if self.source is None else self.source.name
+        """File name of the source as it can be shown, or ``log`` for what never was in a file."""
+        return "log" if self.source is None else visible(self.source.name)
 
     @property
     def t_s(self) -> Array:
@@ -254,11 +255,12 @@ class Log:
             return self.channels[name]
         near = difflib.get_close_matches(name, self.channels, n=1)
         other = near[0] if near else next(iter(self.channels))
-        ignored = ", ".join(self.ignored_columns[:20])
+        ignored = ", ".join(map(brief, self.ignored_columns[:20]))
         raise LogError(
-            f"{self.name}: there is no channel '{name}'; present are {', '.join(self.channels)}"
-            f"{f' (columns not read: {ignored})' if ignored else ''}; name its column in a "
-            f'mapping, or take another channel for it with log.using({name}="{other}")'
+            f"{self.name}: there is no channel '{brief(name)}'; present are "
+            f"{', '.join(self.channels)}{f' (columns not read: {ignored})' if ignored else ''}; "
+            f"name its column in a mapping, or take another channel for it with "
+            f'log.using({brief(name)}="{other}")'
         )
 
     def check_increasing(self) -> None:

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from breakaway.errors import LogError, ScenarioError
 from breakaway.logs.units import dimension_of, unit_of
-from breakaway.scenario.model import Model
+from breakaway.scenario.model import Model, Name, Text
 
 AnyModel = TypeVar("AnyModel", bound=Model)
 
@@ -19,10 +19,10 @@ AnyModel = TypeVar("AnyModel", bound=Model)
 class ChannelMapping(Model):
     """Where a channel comes from."""
 
-    from_: Annotated[str, Field(alias="from")]
+    from_: Annotated[Text, Field(alias="from")]
     """Name of the channel in the file."""
 
-    unit: str | None = None
+    unit: Name | None = None
     """Unit of the numbers in the file; needed unless the file or the name there states it."""
 
     scale: float | None = None
@@ -31,17 +31,17 @@ class ChannelMapping(Model):
     sign: Literal[1, -1] = 1
     """-1 turns the channel around."""
 
-    time: str | None = None
+    time: Text | None = None
     """Name of the time channel of this channel, where it has one of its own."""
 
 
 class TimeMapping(Model):
     """The time channel of all channels that state none of their own."""
 
-    from_: Annotated[str | None, Field(alias="from")] = None
+    from_: Annotated[Text | None, Field(alias="from")] = None
     """Name of the time channel in the file."""
 
-    unit: str | None = None
+    unit: Name | None = None
     """Unit of the time channels in the file."""
 
 
@@ -64,7 +64,7 @@ class CsvMapping(Model):
 class Mapping(Model):
     """The mapping of a log file."""
 
-    format: str | None = None
+    format: Name | None = None
     """Format of the file, as `read_log` takes it."""
 
     channels: dict[str, ChannelMapping] = Field(default_factory=dict)

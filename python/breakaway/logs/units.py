@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from breakaway.errors import LogError
+from breakaway.text import brief
 
 
 @dataclass(frozen=True)
@@ -125,12 +126,12 @@ must be one of N, mN, uN, kN, MN, lbf, kgf
     found = next((u for u in _UNITS if plain(u.symbol) == plain(symbol)), None)
     if found is None:
         raise LogError(
-            f"channel '{channel}': the unit '{symbol}' is unknown; it must be one of {known}; of "
-            "any other unit, state the SI value of 1 as `scale`"
+            f"channel '{channel}': the unit '{brief(symbol)}' is unknown; it must be one of "
+            f"{known}; of any other unit, state the SI value of 1 as `scale`"
         )
     if found.dimension != dimension:
         raise LogError(
-            f"channel '{channel}': the unit '{symbol}' measures {found.dimension}, not "
+            f"channel '{channel}': the unit '{brief(symbol)}' measures {found.dimension}, not "
             f"{dimension}; it must be one of {known}"
         )
     return found

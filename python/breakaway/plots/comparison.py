@@ -14,6 +14,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
+from breakaway import text
 from breakaway.plots.style import COLORS, house_figure, house_style, scaled
 from breakaway.scenario.population import Gentleness
 
@@ -119,7 +120,7 @@ def plot_shares(rows: Sequence[Row]) -> Figure:
             axes.set_title(LAW_WORDS.get(law, law), fontsize=9)
             axes.set_xlim(-2.0, 102.0)
             axes.set_ylim(-0.6, len(methods) - 0.4)
-        panels[0].set_yticks(place, methods, fontsize=9)
+        panels[0].set_yticks(place, [text.label(name) for name in methods], fontsize=9)
         figure.supxlabel("share of the parts (%)", fontsize=9)
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper right", ncols=3)
@@ -150,7 +151,7 @@ def plot_scatter(clouds: Sequence[Cloud], gentle: Gentleness, strict: Gentleness
         for axes, law in zip(panels[0], laws, strict=True):
             axes.set_title(LAW_WORDS.get(law, law), fontsize=9)
         for axes, method in zip(panels[:, 0], methods, strict=True):
-            axes.set_ylabel(f"{method}\njump (mm)", fontsize=8)
+            axes.set_ylabel(f"{text.label(method)}\njump (mm)", fontsize=8)
         for axes in panels[-1]:
             axes.set_xlabel("peak force / breakaway force", fontsize=8)
         figure.legend(handles=_cloud_legend(), loc="outside upper right", ncols=5)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
+from breakaway import text
 from breakaway.design.limit_cycle_course import SEEN, LimitCycleComparison
 from breakaway.design.margins import closed_poles, frequencies, frequency_response
 from breakaway.design.regimes import SampledLoop
@@ -411,4 +412,4 @@ def _legend_above(axes: Axes) -> None:
 
 def _title(figure: Figure, title: str) -> None:
     if title:
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, parse_math=False)
+        figure.suptitle(text.figure(title), x=0.01, ha="left", fontsize=11)

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from breakaway import text
 from breakaway.errors import LogError
 from breakaway.identification.events import LOADING, BreakawayEvent, BreakawayReport
 from breakaway.logs.log import Log
@@ -107,7 +108,7 @@ def plot_breakaway_ratios(reports: Sequence[BreakawayReport]) -> Figure:
         for row, report in enumerate(reports):
             _draw_ratios(axes, row, report)
         axes.axvline(1.0, color=COLORS["axis"], linewidth=0.8)
-        axes.set_yticks(range(len(reports)), [report.name for report in reports])
+        axes.set_yticks(range(len(reports)), [text.label(report.name) for report in reports])
         axes.set_ylim(len(reports) - 0.4, -0.6)
         axes.set_xlim(left=0.9)
         axes.grid(visible=False, axis="y")
@@ -269,6 +270,6 @@ def _headline(report: BreakawayReport, event: BreakawayEvent | None) -> str:
     return f"breakaway {bound}{event.breakaway_force_n:.4g} N{less}{over}{why}"
 
 
-def _title(figure: Figure, text: str) -> None:
-    lines = "\n".join(textwrap.wrap(text, 100))
-    figure.suptitle(lines, x=0.01, ha="left", fontsize=9.5, parse_math=False)
+def _title(figure: Figure, words: str) -> None:
+    lines = "\n".join(textwrap.wrap(text.figure(words), 100))
+    figure.suptitle(lines, x=0.01, ha="left", fontsize=9.5)

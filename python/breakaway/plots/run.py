@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from breakaway import _core
+from breakaway import _core, text
 from breakaway.errors import ScenarioError
 from breakaway.plots.style import COLORS, house_figure, house_style, scaled
 from breakaway.resolution import core_joint
@@ -70,11 +70,10 @@ def plot_run(run: Run) -> Figure:
         _mark_events([position, error, force], run, per_s, end_s)
         figure.align_ylabels()
         figure.suptitle(
-            f"{run.scenario.name}: {str(run.outcome).replace('_', ' ')}",
+            text.figure(f"{run.scenario.name}: {str(run.outcome).replace('_', ' ')}"),
             x=0.01,
             ha="left",
             fontsize=11,
-            parse_math=False,
         )
     return figure
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from breakaway import text
 from breakaway.batch.batch import UNITS
 from breakaway.plots.comparison import LAW_WORDS
 from breakaway.plots.style import COLORS, house_figure, house_style, scaled
@@ -258,7 +259,7 @@ def _outcome_bars(axes: Axes, outcomes: Sequence[Row]) -> None:
                 place, share, left=left, height=0.6, color=color, label=name.replace("_", " ")
             )
         left += share
-    axes.set_yticks(place, [str(row["controller"]) for row in outcomes])
+    axes.set_yticks(place, [text.label(str(row["controller"])) for row in outcomes])
     axes.set_xlim(0.0, 1.0)
     axes.set_xlabel(f"share of {outcomes[0]['runs']} runs")
     axes.grid(visible=False, axis="y")
@@ -281,9 +282,11 @@ def _difference_bars(axes: Axes, rows: Sequence[Row], metric: str, first: str) -
     for y, row in zip(place, rows, strict=True):
         if not row["pairs"]:
             axes.annotate("no pairs", (0.02, y), xycoords=axes.get_yaxis_transform(), va="center")
-    axes.set_yticks(place, [str(row["controller"]) for row in rows])
+    axes.set_yticks(place, [text.label(str(row["controller"])) for row in rows])
     axes.set_ylim(-0.7, len(rows) - 0.3)
-    axes.set_xlabel(f"{_words(metric)} less that of {first}{f' ({unit})' if unit else ''}")
+    axes.set_xlabel(
+        f"{_words(metric)} less that of {text.label(first)}{f' ({unit})' if unit else ''}"
+    )
     axes.grid(visible=False, axis="y")
 
 
@@ -317,7 +320,7 @@ def plot_agreement(title: str, conclusions: Sequence[Row], laws: Sequence[Row]) 
 
 def _law_bars(axes: Axes, conclusion: Row, rows: Sequence[Row]) -> None:
     """Draw the difference that each law shows, with its interval."""
-    quantity, first = str(conclusion["quantity"]), str(conclusion["first"])
+    quantity = str(conclusion["quantity"])
     relative = all(row["relative"] is not None for row in rows)
     name = "relative" if relative else "difference"
     keys = (f"{name}_low", name, f"{name}_high")
@@ -341,7 +344,8 @@ def _law_bars(axes: Axes, conclusion: Row, rows: Sequence[Row]) -> None:
     axes.set_ylim(-0.6, len(rows) - 0.4)
     axes.grid(visible=False, axis="y")
     of = "share released" if quantity == "released" else _words(quantity)
-    axes.set_xlabel(f"{of}: {conclusion['other']} less {first}{f' ({unit})' if unit else ''}")
+    first, other = (text.label(str(conclusion[key])) for key in ("first", "other"))
+    axes.set_xlabel(f"{of}: {other} less {first}{f' ({unit})' if unit else ''}")
     verdict = str(conclusion["verdict"])
     flagged = verdict.startswith(("only", "contradicted"))
     color = COLORS["alarm"] if flagged else COLORS["text"]
@@ -433,7 +437,7 @@ def _is_number(value: object) -> bool:
 
 
 def _short(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{value:g}" if isinstance(value, float) else text.label(str(value))
 
 
 def _factor(rows: Sequence[Row], keys: Sequence[str], name: str) -> tuple[float, str]:
@@ -462,6 +466,6 @@ def _in_brackets(path: str) -> str:
     return f" ({unit})" if unit else ""
 
 
-def _title(figure: Figure, text: str) -> None:
-    lines = "\n".join(textwrap.wrap(text, 100))
-    figure.suptitle(lines, x=0.01, ha="left", fontsize=9.5, parse_math=False)
+def _title(figure: Figure, words: str) -> None:
+    lines = "\n".join(textwrap.wrap(text.figure(words), 100))
+    figure.suptitle(lines, x=0.01, ha="left", fontsize=9.5)

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
+from breakaway import text
 from breakaway.batch.batch import UNITS
 from breakaway.plots.style import COLORS, house_figure, house_style, scaled
 
@@ -317,6 +318,6 @@ def _label(name: str, unit: str) -> str:
     return f"{_words(name)} ({unit})" if unit else _words(name)
 
 
-def _title(figure: Figure, text: str) -> None:
-    lines = "\n".join(textwrap.wrap(text, 100))
-    figure.suptitle(lines, x=0.01, ha="left", fontsize=9.5, parse_math=False)
+def _title(figure: Figure, words: str) -> None:
+    lines = "\n".join(textwrap.wrap(text.figure(words), 100))
+    figure.suptitle(lines, x=0.01, ha="left", fontsize=9.5)

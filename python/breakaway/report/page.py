@@ -10,12 +10,18 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from breakaway.text import visible_lines
+
 
 def render(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the template wants
-    """Fill a template of this package. Text is escaped; a missing name is an error."""
+    """Fill a template of this package.
+
+    Text is escaped, and what HTML has no character for is shown; a missing name is an error.
+    """
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(_source),
         autoescape=True,
+        finalize=_finalized,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -28,6 +34,12 @@ def render(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the
 
 def _source(name: str) -> str:
     return (files("breakaway.report") / name).read_text(encoding="utf-8")
+
+
+def _finalized(value: object) -> object:
+    if isinstance(value, Markup) or not isinstance(value, str):
+        return value
+    return visible_lines(value)
 
 
 def inline_svg(path: Path) -> Markup:

@@ -10,7 +10,7 @@ from pydantic import Discriminator, Field, Tag
 
 from breakaway.scenario.actuator import Actuator
 from breakaway.scenario.controller import Controller
-from breakaway.scenario.model import Model, Positive
+from breakaway.scenario.model import Model, Name, Positive, Text
 from breakaway.scenario.reference import Reference
 
 Array = NDArray[np.float64]
@@ -57,9 +57,9 @@ class Method(Model):
 
     """
 
-    name: str
+    name: Name
     """A name for tables and figures."""
-    description: str = ""
+    description: Text = ""
     """How it works, in a sentence or two."""
     actuator: Actuator
     """What pushes."""

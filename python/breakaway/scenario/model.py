@@ -7,15 +7,28 @@ import functools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Self, get_origin
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
-from pydantic_core import ErrorDetails
+from pydantic_core import ErrorDetails, PydanticCustomError
 
 from breakaway.errors import ScenarioError
+from breakaway.text import LONGEST_NAME, brief, shown, visible
 
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+def _one_line(name: str) -> str:
+    if visible(name) != name:
+        raise PydanticCustomError("hidden_characters", "has hidden characters")
+    return name
+
+
+Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME), AfterValidator(_one_line)]
+"""A short text that everyone can read: no line breaks, control characters or turns of direction."""
+Text = Annotated[str, Field(max_length=10_000)]
+"""A longer text, of any characters."""
 
 
 class Model(BaseModel):
@@ -71,7 +84,7 @@ def explain(error: ValidationError, model: type[BaseModel]) -> str:
 
 
 def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
-    path = [str(key) for key in detail["loc"]]
+    path = [brief(str(key)) for key in detail["loc"]]
     value = detail.get("input")
     context = detail.get("ctx", {})
     kind = detail["type"]
@@ -84,21 +97,20 @@ def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         return _wrong_kind(field, value, context)
     if kind == "literal_error":
-        return f"{field}: {value!r} is not one of {context['expected']}"
+        return f"{field}: {shown(value)} is not one of {context['expected']}"
     if kind == "value_error":
         reason = context["error"]
         return str(reason) if not names else f"{field}.{reason}"
+    remedy = _wanted(owner, names[-1] if names else "")
     bound = next((key for key in _SIGNS if key in context), None)
     if bound is not None:
         limit = context[bound]
-        remedy = _wanted(owner, names[-1] if names else "")
-        return f"{field}: {value!r} is not {_SIGNS[bound]} {limit:g}; give {remedy}"
+        return f"{field}: {shown(value)} is not {_SIGNS[bound]} {limit:g}; give {remedy}"
     if kind == "finite_number":
-        return f"{field}: {value!r} is not finite; give {_wanted(owner, names[-1])}"
-    expected = _TYPE_NAMES.get(kind, detail["msg"][:1].lower() + detail["msg"][1:])
-    return (
-        f"{field}: {value!r} is not {expected}; give {_wanted(owner, names[-1] if names else '')}"
-    )
+        return f"{field}: {shown(value)} is not finite; give {remedy}"
+    known = _TYPE_NAMES.get(kind, "").format(**context)
+    expected = known or detail["msg"][:1].lower() + detail["msg"][1:]
+    return f"{field}: {shown(value)} is not {expected}; give {remedy}"
 
 
 _SIGNS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
@@ -107,6 +119,10 @@ _TYPE_NAMES = {
     "int_type": "a whole number",
     "bool_type": "true or false",
     "string_type": "a text",
+    "string_unicode": "a text",
+    "string_too_short": "a text of at least {min_length} character",
+    "string_too_long": "a text of at most {max_length} characters",
+    "hidden_characters": "one line without control characters",
     "model_type": "a table of keys",
     "model_attributes_type": "a table of keys",
     "dict_type": "a table of keys",
@@ -166,12 +182,12 @@ def _wrong_kind(field: str, value: object, context: Mapping[str, Any]) -> str:
     tag = str(context.get("discriminator", "kind")).strip("'")
     expected = context.get("expected_tags")
     if expected is None:
-        given = sorted(value) if isinstance(value, Mapping) else value
-        return f"{field}.{tag}: is missing; say which kind this is (the keys given are {given})"
+        keys = shown(sorted(value) if isinstance(value, Mapping) else value)
+        return f"{field}.{tag}: is missing; say which kind this is (the keys given are {keys})"
     given = context.get("tag")
     near = difflib.get_close_matches(str(given), expected.replace("'", "").split(", "), n=1)
     hint = f"; did you mean {near[0]!r}?" if near else ""
-    return f"{field}.{tag}: {given!r} is not one of {expected}{hint}"
+    return f"{field}.{tag}: {shown(given)} is not one of {expected}{hint}"
 
 
 def _wanted(owner: type[BaseModel] | None, name: str) -> str:
@@ -199,6 +215,8 @@ def valid_range(owner: type[BaseModel] | None, name: str) -> str:
         "string": "a text",
         "array": "a list of numbers",
     }.get(option.get("type", ""), "a table")
+    if "maxLength" in option:
+        bounds = f"of {option.get('minLength', 0)} to {option['maxLength']} characters"
     return f"{word} {bounds}".strip()
 
 

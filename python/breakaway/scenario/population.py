@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from breakaway.scenario.distribution import Distribution
-from breakaway.scenario.model import Model, Positive
+from breakaway.scenario.model import Model, Name, Positive, Text
 from breakaway.scenario.sensor import Sensors, Watch
 
 Law = Literal["lugre", "elasto_plastic", "gms", "coulomb_stiction", "two_region"]
@@ -86,9 +86,9 @@ class PartPopulation(Model):
 
     """
 
-    name: str
+    name: Name
     """A name for tables and figures."""
-    description: str = ""
+    description: Text = ""
     """What the population is."""
     parts: PartDistributions
     """How its parts differ."""

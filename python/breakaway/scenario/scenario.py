@@ -20,7 +20,7 @@ from breakaway.scenario.controller import (
 )
 from breakaway.scenario.disturbance import Disturbance, UniformDisturbance
 from breakaway.scenario.joint import CoulombStiction, Gms, Joint, Part
-from breakaway.scenario.model import Model
+from breakaway.scenario.model import Model, Name, Text
 from breakaway.scenario.reference import Reference, StepReference
 from breakaway.scenario.run import Limits, Timing, Trace
 from breakaway.scenario.sensor import Sensors, Watch
@@ -51,11 +51,11 @@ class Scenario(Model):
 
     """
 
-    name: str = "scenario"
+    name: Name = "scenario"
     """A name for tables and figures."""
-    description: str = ""
+    description: Text = ""
     """What the scenario is for."""
-    breakaway_version: str | None = None
+    breakaway_version: Name | None = None
     """The version that wrote the file; told, not checked."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Seed of all random draws."""

@@ -84,7 +84,7 @@ def _tables(model: BaseModel, path: str) -> list[str]:
 
 def _explained(owner: type[BaseModel], name: str, field: FieldInfo) -> str:
     allowed = valid_range(owner, name)
-    if allowed in ("a text", "true or false"):  # the value shows it
+    if allowed.startswith(("a text", "true or false")):  # the value shows it
         return _sentence(field.description)
     unbroken = allowed.replace(" ", _NO_BREAK)
     return f"{_sentence(field.description)} {_sentence(unbroken[:1].upper() + unbroken[1:])}"

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from breakaway.batch.columns import check_paths, with_nominal_controller
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.joint import AnyJoint
-from breakaway.scenario.model import NotNegative
+from breakaway.scenario.model import Name, NotNegative
 from breakaway.scenario.population import Law, LawNumbers
 from breakaway.scenario.scenario import Scenario
 from breakaway.studies.base import (
@@ -40,7 +40,7 @@ _JOINTS = {model.model_fields["law"].default: model for model in get_args(AnyJoi
 class AgreementVariant(StudyModel):
     """One of the ways that are compared under every law."""
 
-    name: Annotated[str, Field(min_length=1)]
+    name: Name
     """A name for tables and figures."""
     changes: Changes = Field(default_factory=dict)
     """What is changed in the scenario, by dotted path; all but its friction law and its seed."""

@@ -16,7 +16,7 @@ from breakaway.identification.joint_file import JointFile
 from breakaway.run import RunMetrics
 from breakaway.scenario.distribution import Distribution
 from breakaway.scenario.files import load_scenario
-from breakaway.scenario.model import Model
+from breakaway.scenario.model import Model, Name, Text
 from breakaway.scenario.scenario import Scenario
 from breakaway.studies.levels import stepped_levels, varied_numbers
 
@@ -92,9 +92,9 @@ def _known_metrics(names: list[str]) -> list[str]:
 class StudyBase(StudyModel):
     """What every study has: a scenario, what differs from run to run, and how many runs."""
 
-    name: str = "study"
+    name: Name = "study"
     """A name for tables and figures."""
-    description: str = ""
+    description: Text = ""
     """What the study is for."""
     scenario: Annotated[Scenario, BeforeValidator(loaded)]
     """The scenario: the name of a preset, the path of a file (from the study's own folder), or
@@ -109,7 +109,9 @@ class StudyBase(StudyModel):
     runs: Annotated[int, Field(ge=1, le=1_000_000_000)]
     """Runs of each point: of a grid, a level, a controller, a variant; base samples of a
     sensitivity study."""
-    metrics: Annotated[list[str], Field(min_length=1), AfterValidator(_known_metrics)] | None = None
+    metrics: Annotated[list[Name], Field(min_length=1), AfterValidator(_known_metrics)] | None = (
+        None
+    )
     """Metrics that are recorded. Left out: all; tables and figures show the main ones."""
     design: Literal["random", "sobol", "latin_hypercube"] = "random"
     """How the values of what varies are spread."""
@@ -178,7 +180,7 @@ class StudyBase(StudyModel):
 class LevelsTable(StudyModel):
     """A number that is sought, and the levels of it that may be tried."""
 
-    over: str
+    over: Name
     """The number that is sought, by dotted path, such as "actuator.force_max_n"."""
     low: float
     """Lowest level that is tried."""

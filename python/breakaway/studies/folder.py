@@ -21,6 +21,7 @@ from breakaway.resolution import resolve
 from breakaway.studies.parts import PARTS, label_types, part_schema
 from breakaway.studies.plan import Plan
 from breakaway.studies.study import Study
+from breakaway.text import csv_cell
 
 MANIFEST, SUMMARY, LOCK = "manifest.json", "summary.json", ".lock"
 FORMAT = 1
@@ -237,12 +238,12 @@ def as_json(content: object) -> bytes:
 
 
 def as_csv(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Give rows as a table with all their columns; what is None is empty."""
+    """Give rows as a table with all their columns; what is None is empty, no text a formula."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     text = StringIO()
-    writer = csv.DictWriter(text, names, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(map(csv_cell, names))
+    writer.writerows([csv_cell(row.get(name)) for name in names] for row in rows)
     return text.getvalue()
 
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from breakaway.errors import ScenarioError
 from breakaway.scenario.distribution import Distribution
-from breakaway.scenario.model import Model
+from breakaway.scenario.model import Model, Name
+from breakaway.text import shown
 
-Level = bool | int | float | str
+Level = bool | int | float | Name
 """A value that is swept."""
 
 _DISTRIBUTIONS: dict[str, type[Model]] = {
@@ -41,12 +42,12 @@ def _distribution(path: str, table: object) -> object:
     known = ", ".join(repr(name) for name in _DISTRIBUTIONS)
     if not isinstance(table, Mapping) or "distribution" not in table:
         raise ValueError(
-            f"{path}: {table!r} is not a distribution; give a table with distribution = one of "
-            f"{known}"
+            f"{path}: {shown(table)} is not a distribution; give a table with distribution = one "
+            f"of {known}"
         )
     kind = table["distribution"]
     if not isinstance(kind, str) or kind not in _DISTRIBUTIONS:
-        raise ValueError(f"{path}.distribution: {kind!r} is not one of {known}")
+        raise ValueError(f"{path}.distribution: {shown(kind)} is not one of {known}")
     try:
         return _DISTRIBUTIONS[kind](**table)
     except ScenarioError as error:
@@ -93,18 +94,22 @@ def _levels(path: str, values: object) -> list[Level]:
     levels = _spaced(path, values) if isinstance(values, Mapping) else values
     if not isinstance(levels, list | tuple) or not levels:
         raise ValueError(
-            f"{path}: {values!r} holds no values; give a list of them, or "
+            f"{path}: {shown(values)} holds no values; give a list of them, or "
             "{ from = ..., to = ..., count = ... }"
         )
     for level in levels:
-        if not isinstance(level, Level) or (isinstance(level, float) and not isfinite(level)):
-            raise ValueError(f"{path}: {level!r} is not a finite number, a text, true or false")
+        if not isinstance(level, bool | int | float | str) or (
+            isinstance(level, float) and not isfinite(level)
+        ):
+            raise ValueError(
+                f"{path}: {shown(level)} is not a finite number, a text, true or false"
+            )
     if len(set(levels)) < len(levels):
         twice = next(level for level in levels if levels.count(level) > 1)
-        raise ValueError(f"{path}: {twice!r} is there twice; give each value once")
+        raise ValueError(f"{path}: {shown(twice)} is there twice; give each value once")
     kinds = {float if type(level) is int else type(level) for level in levels}
     if len(kinds) > 1:
-        raise ValueError(f"{path}: {levels!r} mixes kinds of values; give numbers or texts")
+        raise ValueError(f"{path}: {shown(levels)} mixes kinds of values; give numbers or texts")
     return list(levels)
 
 

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from breakaway.batch.columns import check_paths, with_nominal_controller
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.distribution import Samples
+from breakaway.scenario.model import Name
 from breakaway.scenario.scenario import Scenario
 from breakaway.studies.agreement_study import AgreementStudy
 from breakaway.studies.base import Changes, LevelsTable, Share, StudyBase, changed, loaded, percent
@@ -80,7 +81,7 @@ class SweepStudy(StudyBase):
 class RobustnessTable(LevelsTable):
     """How far robustness is sought, and what it means."""
 
-    over: str
+    over: Name
     """The number whose largest survived level is sought, by dotted path, such as
     "disturbance.var"; or "part_scale", which multiplies the spread of everything in vary."""
     failure: list[Failure] = Field(default_factory=lambda: list(FAILURES), min_length=1)
@@ -221,7 +222,7 @@ class SensitivityStudy(StudyBase):
 class ComparedController(StudyModel):
     """One of the controllers that are compared."""
 
-    name: Annotated[str, Field(min_length=1)]
+    name: Name
     """A name for tables and figures."""
     scenario: Annotated[Scenario, BeforeValidator(loaded)] | None = None
     """A scenario whose controller and actuator are taken; gains that it leaves open are designed

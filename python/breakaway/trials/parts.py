@@ -101,7 +101,8 @@ def scenario_of(
         "duration_s": population.duration_s,
     }
     values = {
-        "name": f"{method.name} on {population.name}, {law}",
+        "name": method.name,
+        "description": f"On {population.name}, {law}",
         "seed": seed,
         "joint": {"law": law, **_law_numbers(population, law)},
         "part": {},

@@ -12,14 +12,18 @@ from breakaway.errors import ScenarioError, StudyError
 from breakaway.scenario.actuator import FeedAxis, Piezo
 from breakaway.scenario.files import load_method, load_population
 from breakaway.scenario.method import Method
+from breakaway.scenario.model import Name, Text
 from breakaway.scenario.population import Law, PartPopulation
 from breakaway.studies.study import StudyModel
+from breakaway.text import LONGEST_NAME, shown
 from breakaway.trials import scenario_of
 from breakaway.tuning.numbers import check_number, number_of, with_numbers
 from breakaway.tuning.scores import PIEZO_METRICS, SHARES, ScoreKind, score_kind
 
 TRIALS_MAX = 10_000
 """Most trials of a tuning."""
+TUNED_LAST = f"_tuned_{TRIALS_MAX}"
+"""The longest that a tuned method has after its name."""
 TEST_FIRST, TEST_RUNS = 1_000_000, 1000
 """Unseen parts where a tuning does not say which."""
 
@@ -152,9 +156,9 @@ class Tuning(StudyModel):
 
     kind: Literal["tune"] = "tune"
     """What this is."""
-    name: str = "tuning"
+    name: Name = "tuning"
     """A name for tables and figures."""
-    description: str = ""
+    description: Text = ""
     """What the tuning is for."""
     population: Annotated[PartPopulation, BeforeValidator(_population)]
     """The parts: the name of a preset, the path of a file (from the tuning's own folder), or its
@@ -164,7 +168,7 @@ class Tuning(StudyModel):
     its tables."""
     laws: Annotated[list[Law], Field(min_length=1)] = Field(default_factory=_lugre)
     """Friction laws of the joints. Every score is that of the law where it is worst."""
-    objectives: Annotated[list[str], Field(min_length=1, max_length=4)]
+    objectives: Annotated[list[Name], Field(min_length=1, max_length=4)]
     """Scores that are to become good: shares become large, quantiles of metrics small."""
     constraints: Annotated[dict[str, ScoreBound], BeforeValidator(_bounds)] = Field(
         default_factory=dict
@@ -232,6 +236,7 @@ class Tuning(StudyModel):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
+        _check_name(self.method.name)
         _check_parts(self)
         for path, span in self.tune.items():
             check_number(self.method, path, {"low": span.low, "high": span.high})
@@ -246,6 +251,16 @@ class Tuning(StudyModel):
                     f"method: does not fit the population under the law {law}: {error}"
                 ) from None
         return self
+
+
+def _check_name(name: str) -> None:
+    """Raise unless a tuned method can have a longer one."""
+    most = LONGEST_NAME - len(TUNED_LAST)
+    if len(name) > most:
+        raise StudyError(
+            f"method.name: {shown(name)} has {len(name)} characters; tuned methods are named by it "
+            f"and {TUNED_LAST[:6]!r} or more: give a name of at most {most} characters"
+        )
 
 
 def _check_parts(tuning: Tuning) -> None:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Sequence
 from contextlib import suppress
-from io import StringIO
 from pathlib import Path
 
 import tomli_w
 
 from breakaway.output import output_folder, write_atomically
 from breakaway.scenario.method import Method
-from breakaway.studies.folder import SUMMARY, as_json
+from breakaway.studies.folder import SUMMARY, as_csv, as_json
+from breakaway.text import toml_comment
 from breakaway.tuning.evaluation import Evaluation
 from breakaway.tuning.summary import Found, Row, content_of, pareto_rows, trial_rows
 
@@ -30,8 +28,8 @@ def write_end(found: Found, folder: Path) -> None:
     if found.best is not None:
         methods[BEST] = found.best
     with output_folder(folder) as staging:
-        (staging / "trials.csv").write_text(_csv(trial_rows(found)), "utf-8", newline="")
-        (staging / "pareto.csv").write_text(_csv(pareto_rows(found)), "utf-8", newline="")
+        (staging / "trials.csv").write_text(as_csv(trial_rows(found)), "utf-8", newline="")
+        (staging / "pareto.csv").write_text(as_csv(pareto_rows(found)), "utf-8", newline="")
         for name, evaluation in methods.items():
             text = method_toml(found, evaluation, name)
             (staging / name).write_text(text, "utf-8", newline="\n")
@@ -50,8 +48,8 @@ def method_toml(found: Found, evaluation: Evaluation, file: str) -> str:
     place = "" if file == BEST else f"_{file[7:-5]}"
     unseen = found.worst(found.unseen[evaluation.number])
     said = [
-        f"# {tuning.method.name}, tuned on {tuning.training_runs} parts of "
-        f"{tuning.population.name}, laws {', '.join(tuning.laws)}:",
+        f"# {toml_comment(tuning.method.name)}, tuned on {tuning.training_runs} parts of "
+        f"{toml_comment(tuning.population.name)}, laws {', '.join(tuning.laws)}:",
         f"# trial {evaluation.number} of {len(found.evaluations)}.",
         "# Training and unseen scores:",
         *(
@@ -82,12 +80,3 @@ def _draw(found: Found, staging: Path, content: Row) -> None:
         save_figure(figure, staging / f"{name}.png")
         figure.set_layout_engine("none")  # the layout stays: finding it takes longer than drawing
         save_figure(figure, staging / f"{name}.svg")
-
-
-def _csv(rows: Sequence[Row]) -> str:
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    text = StringIO()
-    writer = csv.DictWriter(text, names, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()
