@@ -39,7 +39,6 @@ def test_formats_are_told_by_bytes_then_suffix(tmp_path: Path) -> None:
     [
         ("tdms", "nptdms", "npTDMS; .*'breakaway.tdms.'"),
         ("h5", "h5py", "h5py; .*'breakaway.hdf5.'"),
-        ("mcap", "mcap.reader", "mcap; .*'breakaway.mcap.'"),
     ],
 )
 def test_names_the_extra_of_a_missing_package(

@@ -11,6 +11,7 @@ import typer
 
 from breakaway.cli.identified import law_tables, regression_tables
 from breakaway.cli.progress import counted
+from breakaway.cli.quantity import memory_bytes
 from breakaway.cli.show import busy, say, say_json
 
 if TYPE_CHECKING:
@@ -119,6 +120,13 @@ def identify(
             show_default="LOG with .toml, if it is there",
         ),
     ] = None,
+    memory_gib: Annotated[
+        float | None,
+        typer.Option(
+            help="Most memory in GiB that the content of a log may take.",
+            show_default="half of what is free",
+        ),
+    ] = None,
     use: Annotated[
         list[str] | None,
         typer.Option(help="Another channel of the log as a channel.", metavar="CHANNEL=OTHER"),
@@ -168,7 +176,12 @@ def identify(
     given |= {"--position-dependent": position_dependent}
     given |= {"--motion": motion is not MotionChoice.IMPOSED}
     _refuse_unused(law, given, decimation)
-    measured = read_log(log, mapping, format.value if format else None)
+    measured = read_log(
+        log,
+        mapping,
+        format.value if format else None,
+        memory_bytes=memory_bytes(memory_gib),
+    )
     if resample_hz is not None:
         measured = measured.resampled(rate_hz=resample_hz)
     for pair in use or []:

@@ -51,7 +51,8 @@ class Budget:
             most_bytes = SHARE * free_memory_bytes()
         elif not 0.0 < most_bytes < math.inf:
             raise LogError(
-                f"memory_bytes: {most_bytes!r} is no memory; it must be a finite number > 0"
+                f"memory_bytes (--memory-gib): {most_bytes!r} is not a finite number > 0; leave it "
+                "out for half of what is free"
             )
         return cls(path.name, most_bytes)
 

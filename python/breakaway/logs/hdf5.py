@@ -154,7 +154,7 @@ def _filters(dataset: Any) -> list[int]:  # noqa: ANN401
 
 
 def _no_numbers(h5py: Any, dataset: Any) -> str:  # noqa: ANN401
-    """Say why an array is no vector of real numbers, or nothing; tables are left to their members."""
+    """Say why an array is no vector of real numbers, or nothing; members of tables come later."""
     if h5py.check_ref_dtype(dataset.dtype) is not None:
         return "is of references to other places; it must be real numbers"
     if _attribute(dataset, "MATLAB_class") in TEXT_CLASSES:
@@ -196,7 +196,7 @@ def _chunk_bytes(path: Path, name: str, dataset: Any) -> int:  # noqa: ANN401
 
     HDF5 unpacks a chunk whole, whatever its size turns out to be.
     """
-    most = math.prod(dataset.chunks) * dataset.dtype.itemsize
+    most: int = math.prod(dataset.chunks) * dataset.dtype.itemsize
     filters = _filters(dataset)
     chunks: list[Any] = []
     dataset.id.chunk_iter(chunks.append)
@@ -211,7 +211,7 @@ def _chunk_bytes(path: Path, name: str, dataset: Any) -> int:  # noqa: ANN401
                     f"{path.name}: a chunk of '{name}' holds more or less than the {most} bytes "
                     "that it claims; it is damaged: export the log again"
                 )
-    largest = max((chunk.size for chunk in chunks), default=0)
+    largest: int = max((chunk.size for chunk in chunks), default=0)
     return max(most, largest * FILTERS[LZF] if LZF in filters else largest)
 
 

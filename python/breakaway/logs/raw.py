@@ -75,7 +75,8 @@ class RawFile:
             self.refuse(name, reason)
             return
         self._check_name(name)
-        self.channels[name] = RawChannel(frozen(array), t_s, unit)
+        stamps = None if t_s is None else frozen(t_s)
+        self.channels[name] = RawChannel(frozen(array), stamps, unit)
 
     def refuse(self, name: str, reason: str) -> None:
         """Note why a channel can not be read."""
