@@ -92,7 +92,13 @@ def _ask_for_segments(stream: BinaryIO, budget: Budget) -> None:
     stream.seek(0)
 
 
-def _check(raw: RawFile, budget: Budget, name: str, channel: Any, levels: tuple[Any, ...]) -> None:  # noqa: ANN401
+def _check(
+    raw: RawFile,
+    budget: Budget,
+    name: str,
+    channel: Any,  # noqa: ANN401 - npTDMS has no types
+    levels: tuple[Any, ...],
+) -> None:
     """Note why a channel can not be read, or ask for its memory."""
     # Before its type is asked for: npTDMS takes memory for as many scales as are claimed.
     reason = next((why for one in levels if (why := _no_scale(one.properties))), "")
@@ -110,18 +116,20 @@ def _check(raw: RawFile, budget: Budget, name: str, channel: Any, levels: tuple[
 
 def _no_scale(properties: Mapping[str, Any]) -> str:
     """Say why the scales of a channel can not be followed, or nothing."""
+    count = properties.get("NI_Number_Of_Scales", 0)
+    if not isinstance(count, int | np.integer):
+        return f"states {str(count)[:40]!r} scales; it must be a number: export scaled values"
     if properties.get("NI_Scaling_Status") == "scaled":
         return ""
-    count = properties.get("NI_Number_Of_Scales", 0)
-    if not isinstance(count, int | np.integer) or not 0 <= count <= MOST_SCALES:
-        return f"states {count!r} scales; at most {MOST_SCALES} are followed: export scaled values"
+    if not 0 <= count <= MOST_SCALES:
+        return f"states {count} scales; at most {MOST_SCALES} are followed: export scaled values"
     for key, kind in properties.items():
         found = re.fullmatch(r"NI_Scale\[(\d+)\]_Scale_Type", key)
         if found and (len(found[1]) > 1 or int(found[1]) >= MOST_SCALES):
             return f"has the scale {found[1][:40]}; at most {MOST_SCALES} are followed"
-        if found and kind not in SCALES:
+        if found and str(kind) not in SCALES:
             return (
-                f"is scaled by {kind!r}, which is not known; its raw values are no measurement: "
+                f"is scaled by {str(kind)[:40]!r}, which is not known; its raw values are no measurement: "
                 "export scaled values"
             )
     return ""
