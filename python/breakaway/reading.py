@@ -16,6 +16,7 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Any
 
+from breakaway.errors import BreakawayError
 from breakaway.text import shown, visible
 
 MOST_TEXT_BYTES = 4 * 2**20
@@ -186,6 +187,55 @@ def read_toml(path: Path) -> dict[str, Any]:
 
     """
     return parse_toml(read_text(path))
+
+
+def text_of(
+    path: Path,
+    kind: type[BreakawayError],
+    missing: str = "there is no such file; check the path",
+) -> str:
+    """Return the text of a TOML file; what is wrong becomes an error of the kind given.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    kind : type
+        Class of the error.
+    missing : str
+        What the error says where there is nothing at this path.
+
+    Raises
+    ------
+    BreakawayError
+        Of the kind given: there is no such file, it is no regular file, can not be read, is too
+        large, is not UTF-8, or starts with a byte order mark.
+
+    """
+    try:
+        text = read_text(path)
+    except FileNotFoundError:
+        raise kind(f"{path}: {missing}") from None
+    except (OSError, ValueError) as error:
+        raise kind(f"{path}: can not be read as text: {error}") from None
+    if text.startswith("\ufeff"):
+        raise kind(f"{path}: starts with a byte order mark; save it as plain UTF-8")
+    return text
+
+
+def table_of(text: str, source: object, kind: type[BreakawayError]) -> dict[str, Any]:
+    """Parse TOML; what is wrong becomes an error of the kind given, which names the source.
+
+    Raises
+    ------
+    BreakawayError
+        Of the kind given: it is not TOML, or goes beyond a limit of `parse_toml`.
+
+    """
+    try:
+        return parse_toml(text)
+    except ValueError as error:
+        raise kind(f"{source}: is not TOML: {error}") from None
 
 
 def read_json(path: Path, most_bytes: int) -> Any:  # noqa: ANN401 - any JSON

@@ -266,7 +266,7 @@ BAD = [
     ((*QUICK, "--use", "force_n"), "--use: 'force_n' is not of the form CHANNEL=OTHER"),
     ((*QUICK, "--use", "force_n=none_n"), "there is no channel 'none_n'"),
     ((*QUICK, "--use", "force_n=position_m"), "they must be of one dimension"),
-    ((*QUICK, "--controller", "none.toml"), "none.toml: can not be read as TOML"),
+    ((*QUICK, "--controller", "none.toml"), "none.toml: there is no such file"),
     ((*QUICK, "--controller", "drive.toml"), "kind: 'servo' is not one of 'cascade', 'pid'"),
     ((*QUICK, "--mapping", "none.toml"), "none.toml: there is no such mapping file"),
     ((*QUICK, "--format", "docx"), "--format"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from breakaway.cli.quantity import show
+from breakaway.cli.quantity import memory_bytes, show
 from breakaway.cli.show import Sheet, busy, say, say_json
 
 if TYPE_CHECKING:
@@ -38,6 +38,13 @@ def events(
             show_default="LOG with .toml, if it is there",
         ),
     ] = None,
+    memory_gib: Annotated[
+        float | None,
+        typer.Option(
+            help="Most memory in GiB that the content of a log may take.",
+            show_default="half of what is free",
+        ),
+    ] = None,
     resample_hz: Annotated[
         float | None,
         typer.Option(help="Bring channels of different stamps to this rate, by interpolation."),
@@ -62,7 +69,7 @@ def events(
     reports, hints = [], []
     with busy("looking for breakaway ..."):
         for path in logs:
-            log = read_log(path, mapping)
+            log = read_log(path, mapping, memory_bytes=memory_bytes(memory_gib))
             if resample_hz is not None:
                 log = log.resampled(rate_hz=resample_hz)
             for pair in use or []:

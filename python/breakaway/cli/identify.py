@@ -11,6 +11,7 @@ import typer
 
 from breakaway.cli.identified import law_tables, regression_tables
 from breakaway.cli.progress import counted
+from breakaway.cli.quantity import memory_bytes
 from breakaway.cli.show import busy, say, say_json
 
 if TYPE_CHECKING:
@@ -119,6 +120,13 @@ def identify(
             show_default="LOG with .toml, if it is there",
         ),
     ] = None,
+    memory_gib: Annotated[
+        float | None,
+        typer.Option(
+            help="Most memory in GiB that the content of a log may take.",
+            show_default="half of what is free",
+        ),
+    ] = None,
     use: Annotated[
         list[str] | None,
         typer.Option(help="Another channel of the log as a channel.", metavar="CHANNEL=OTHER"),
@@ -168,7 +176,12 @@ def identify(
     given |= {"--position-dependent": position_dependent}
     given |= {"--motion": motion is not MotionChoice.IMPOSED}
     _refuse_unused(law, given, decimation)
-    measured = read_log(log, mapping, format.value if format else None)
+    measured = read_log(
+        log,
+        mapping,
+        format.value if format else None,
+        memory_bytes=memory_bytes(memory_gib),
+    )
     if resample_hz is not None:
         measured = measured.resampled(rate_hz=resample_hz)
     for pair in use or []:
@@ -308,27 +321,33 @@ def _page(log: Path, out: Path | None) -> Path:
     page = Path(f"{log.stem}.html") if out is None else out.with_suffix(".html")
     if page == out:
         raise OutputError(f"{out}: is where the report goes; give --out another suffix")
-    if page.is_file() and b"breakaway" not in page.read_bytes()[:4096]:
+    if page.is_file() and not _is_report(page):
         raise OutputError(f"{page}: is there and is no report; move it, or give another --out")
     return page
+
+
+def _is_report(page: Path) -> bool:
+    from breakaway.reading import open_regular
+
+    try:
+        with open_regular(page) as file:
+            return b"breakaway" in file.read(4096)
+    except OSError:
+        return False  # not ours to write over
 
 
 def _controller(path: Path | None) -> Any:  # noqa: ANN401 - a Cascade or a Pid
     """Read the controller of a rig: a cascade, or a PID whose gains are given."""
     if path is None:
         return None
-    import tomllib
-
     from breakaway.errors import ScenarioError
     from breakaway.identification import Cascade
+    from breakaway.reading import table_of, text_of
     from breakaway.scenario import Pid
     from breakaway.scenario.files import parse_toml
 
-    try:
-        text = path.read_text(encoding="utf-8")
-        kind = tomllib.loads(text).get("kind")
-    except (OSError, ValueError) as error:
-        raise ScenarioError(f"{path}: can not be read as TOML: {error}") from None
+    text = text_of(path, ScenarioError)
+    kind = table_of(text, path, ScenarioError).get("kind")
     if kind not in ("cascade", "pid"):
         raise ScenarioError(f"{path}: kind: {kind!r} is not one of 'cascade', 'pid'")
     return parse_toml(Cascade if kind == "cascade" else Pid, text, path.name)

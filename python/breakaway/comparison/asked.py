@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, TypeVar
@@ -13,6 +12,7 @@ from pydantic import Field, model_validator
 
 from breakaway.batch.simulation import RUNS_MAX
 from breakaway.errors import StudyError
+from breakaway.reading import read_toml
 from breakaway.scenario.files import load_method, load_population, preset_names
 from breakaway.scenario.method import Method
 from breakaway.scenario.model import Name
@@ -132,8 +132,8 @@ def _whole(source: str | Path) -> Asked | None:
     if isinstance(source, str) and source in preset_names("populations"):
         return None
     try:
-        values = tomllib.loads(Path(source).read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        values = read_toml(Path(source))
+    except (OSError, ValueError):
         return None  # whoever reads it as a population says what is wrong
     if values.get("kind") != KIND:
         return None

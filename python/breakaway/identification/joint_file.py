@@ -18,6 +18,7 @@ from breakaway.identification.uncertainty import Posterior
 from breakaway.identification.verdicts import stiction_peak
 from breakaway.logs.log import Array, Log
 from breakaway.output import write_atomically
+from breakaway.reading import text_of
 from breakaway.scenario.distribution import Samples
 from breakaway.scenario.files import parse_toml
 from breakaway.scenario.model import Model, Name, NotNegative, Positive, Text
@@ -335,13 +336,7 @@ class JointFile(Model):
 
         """
         source = Path(path)
-        try:
-            text = source.read_text(encoding="utf-8")
-        except FileNotFoundError:
-            raise ScenarioError(f"{source}: there is no such file; check the path") from None
-        except (OSError, UnicodeDecodeError) as error:
-            raise ScenarioError(f"{source}: can not be read as text: {error}") from None
-        return parse_toml(cls, text, source.name)
+        return parse_toml(cls, text_of(source, ScenarioError), source.name)
 
 
 def _fields_of(values: Mapping[str, Any], told: set[str]) -> dict[str, Any]:

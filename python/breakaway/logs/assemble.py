@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +10,7 @@ from breakaway.errors import LogError
 from breakaway.logs.channel import Array, Channel, named
 from breakaway.logs.log import Log
 from breakaway.logs.mapping import ChannelMapping, Mapping
-from breakaway.logs.names import file_unit, read_header, read_headers
+from breakaway.logs.names import file_unit, nearest, read_header, read_headers
 from breakaway.logs.raw import RawChannel, RawFile
 from breakaway.logs.units import Unit, si_symbol, stated, unit_of
 from breakaway.text import brief
@@ -58,10 +57,20 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
 
 def _build(raw: RawFile, pick: Pick, times: _Times) -> Channel:
     found = column(raw, pick.column)
-    values = pick.factor * found.values + pick.offset
+    values = converted(found.values, pick.factor, pick.offset)
     return Channel(
         pick.channel, times.of(found, pick), values, from_name=pick.column, unit=pick.unit
     )
+
+
+def converted(values: Array, factor: float, offset: float = 0.0) -> Array:
+    """Return factor * values + offset, read-only; the same array where nothing changes."""
+    if (factor, offset) == (1.0, 0.0):
+        return values
+    result = factor * values
+    result += offset
+    result.setflags(write=False)
+    return result
 
 
 def _notes(pick: Pick, raw: RawFile) -> list[str]:
@@ -138,6 +147,7 @@ class _Times:
         self.raw, self.mapping = raw, mapping
         self.used: set[str] = set()
         self.shared: dict[str, Array] = {}
+        self.headers: list[str] | None = None
 
     def of(self, found: RawChannel, pick: Pick) -> Array:
         """Return the stamps of a channel: of its mapping, else its own, else the file's."""
@@ -152,13 +162,13 @@ class _Times:
             found = column(self.raw, name)
             keys = ChannelMapping.parse({"from": name, "unit": self.mapping.time.unit})
             unit = _unit(self.raw, name, "t_s", keys)
-            t_s = unit.factor * found.values
-            t_s.setflags(write=False)
-            self.shared[name] = t_s
+            self.shared[name] = converted(found.values, unit.factor)
         return self.shared[name]
 
     def _header(self) -> str:
-        names = [item.name for item in read_headers(self.raw) if item.channel == "t_s"]
+        if self.headers is None:
+            self.headers = [one.name for one in read_headers(self.raw) if one.channel == "t_s"]
+        names = self.headers
         if not names:
             raise _missing(self.raw, "t_s", "time", "ms")
         if len(names) > 1:
@@ -179,7 +189,7 @@ def place(raw: RawFile, name: str) -> str:
         There is no such column, or there are several.
 
     """
-    if name in raw.names:
+    if name in raw:
         return name
     ends = [full for full in raw.names if full.endswith((f"/{name}", f".{name}"))]
     if len(ends) == 1:
@@ -204,12 +214,11 @@ def _joint(reason: str) -> str:
 
 def present(raw: RawFile, name: str) -> str:
     """Name the columns of a file, and the one nearest to ``name``."""
-    lower = {other.lower(): other for other in raw.names}
-    near = difflib.get_close_matches(name.lower(), lower, n=1)
-    nearest = f"the nearest present is '{brief(lower[near[0]])}', of " if near else "present are "
+    near = nearest(name, raw.names)
+    found = f"the nearest present is '{brief(near)}', of " if near else "present are "
     names = [brief(other) for other in raw.names[:20]]
     more = ", ..." if len(raw.names) > 20 else ""
-    return nearest + (", ".join(names) + more if names else "none")
+    return found + (", ".join(names) + more if names else "none")
 
 
 def _missing(raw: RawFile, channel: str, key: str, unit: str) -> LogError:

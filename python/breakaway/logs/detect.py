@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from breakaway.errors import LogError
+from breakaway.reading import open_regular
 
 MAGIC = {
     b"PAR1": "parquet",
@@ -41,7 +42,7 @@ def detect(path: Path) -> str:
         Neither its first bytes nor its suffix are known.
 
     """
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         head = file.read(16)
     for magic, name in MAGIC.items():
         if head.startswith(magic):

@@ -15,7 +15,7 @@ REQUIRED = ("t", "qm", "vir", "gtau")
 
 def is_emps(raw: RawFile) -> bool:
     """Whether a MATLAB file holds the variables of the benchmark."""
-    return all(name in raw.names for name in REQUIRED)
+    return all(name in raw for name in REQUIRED)
 
 
 def emps_layout(raw: RawFile) -> tuple[RawFile, Mapping]:
@@ -40,7 +40,7 @@ def emps_layout(raw: RawFile) -> tuple[RawFile, Mapping]:
     """
     with named(raw.path.name):
         for name in REQUIRED:
-            if name not in raw.names:
+            if name not in raw:
                 raise LogError(
                     f"variable '{name}' is missing; {present(raw, name)}; the EMPS layout needs "
                     f"{', '.join(REQUIRED)}: write a mapping for another layout"
@@ -55,7 +55,7 @@ def emps_layout(raw: RawFile) -> tuple[RawFile, Mapping]:
         "position_m": {"from": "qm", "unit": "m"},
         "force_n": {"from": "vir", "unit": "V", "scale": float(gain[0])},
     }
-    if "qg" in raw.names:
+    if "qg" in raw:
         channels["reference_m"] = {"from": "qg", "unit": "m"}
     time = {"from": "t", "unit": "s"}
     rest = {name: found for name, found in raw.channels.items() if name != "gtau"}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping as Keys
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
@@ -11,6 +10,7 @@ from pydantic import Field
 
 from breakaway.errors import LogError, ScenarioError
 from breakaway.logs.units import dimension_of, unit_of
+from breakaway.reading import table_of, text_of
 from breakaway.scenario.model import Model, Name, Text
 
 AnyModel = TypeVar("AnyModel", bound=Model)
@@ -140,11 +140,5 @@ def _parse(model: type[AnyModel], values: Keys[str, Any], where: str) -> AnyMode
 
 
 def _toml(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise LogError(f"{path}: there is no such mapping file; check the path") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise LogError(f"{path}: can not be read as text: {error}") from None
-    except (ValueError, RecursionError) as error:
-        raise LogError(f"{path.name}: is not TOML: {error}") from None
+    text = text_of(path, LogError, "there is no such mapping file; check the path")
+    return table_of(text, path.name, LogError)

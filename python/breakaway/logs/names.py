@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
+import itertools
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from breakaway.logs.raw import RawFile
@@ -34,6 +37,9 @@ WORDS = {
     "temperature": "temperature_degc",
 }
 """What the name of a column begins with, in lower case -> channel. Other columns need a mapping."""
+
+MOST_PARTS = max(word.count("_") + 1 for word in WORDS)
+"""Most parts that a word has between its underscores."""
 
 SECOND_CHOICE = {"friction_force": "friction_n"}
 """What a word means where another column gives its channel of `WORDS`."""
@@ -94,12 +100,41 @@ def read_header(name: str, unit: str = "") -> Stated | None:
 
 def _splits(name: str) -> list[tuple[str, str]]:
     """Return the ways to split a name into what it is and its unit, the longest unit first."""
-    bracket = re.fullmatch(r"(.*?)[\s_]*[\[(]([^\[\]()]*)[\])]\s*", name)
-    text, symbol = (bracket[1], bracket[2]) if bracket else (name, "")
-    parts = re.split(r"[\s_.\-]+", re.split(r"[/.\\]", text.strip())[-1].lower())
-    if bracket:
-        return [("_".join(parts), symbol)]
+    text, symbol = _bracketed(name)
     cased = re.split(r"[\s_.\-]+", re.split(r"[/.\\]", text.strip())[-1])
-    ways = [("_".join(parts[:k]), "_".join(cased[k:])) for k in range(1, len(parts) + 1)]
+    parts = [part.lower() for part in cased]
+    if symbol is not None:
+        return [("_".join(parts), symbol)]
+    most = min(len(parts), MOST_PARTS)
+    ways = [("_".join(parts[:k]), "_".join(cased[k:])) for k in range(1, most + 1)]
     # `position_in` is more often the position at an inlet than one in inches.
     return [(what, unit) for what, unit in ways if unit.lower() != "in"]
+
+
+def _bracketed(name: str) -> tuple[str, str | None]:
+    """Split off a unit in brackets at the end; None where there is none."""
+    text = name.rstrip()
+    start = max(text.rfind("["), text.rfind("("))
+    unit = text[start + 1 : -1]
+    if start < 0 or text[-1] not in "])" or "]" in unit or ")" in unit:
+        return name, None
+    return text[:start].rstrip(BLANKS), unit
+
+
+BLANKS = " _\t\n\r\v\f"
+"""What may stand between the name of a quantity and its unit."""
+
+NEAREST_OF = 1000
+"""Among how many names the nearest is looked for."""
+
+
+def nearest(name: str, others: Iterable[str]) -> str | None:
+    """Return the name that is most like another, if any is; long names are like none.
+
+    >>> nearest("position_m", ["Time", "Position_mm"])
+    'Position_mm'
+    """
+    short = itertools.islice((other for other in others if len(other) <= 80), NEAREST_OF)
+    lower = {other.lower(): other for other in short}
+    near = difflib.get_close_matches(name.lower()[:80], lower, n=1)
+    return lower[near[0]] if near else None

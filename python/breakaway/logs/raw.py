@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import functools
 import gc
-import hashlib
 import importlib
 import io
 import logging
+import math
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -28,6 +28,12 @@ DEFLATE_RATIO = 1032
 
 MOST_SAMPLES = 2**28
 """A channel with more samples (2 GiB of numbers) is refused."""
+
+MOST_NAMES = 16_384
+"""Most channels of a file, those that can not be read included; as many as a spreadsheet has."""
+
+LONGEST_NAME = 1000
+"""Most characters of the name of a channel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,48 +62,83 @@ class RawFile:
         """All names in the file."""
         return [*self.channels, *(name for name in self.unreadable if name not in self.channels)]
 
+    def __contains__(self, name: str) -> bool:
+        return name in self.channels or name in self.unreadable
+
     def add(self, name: str, values: npt.ArrayLike, t_s: Array | None, unit: str = "") -> None:
-        """Add a channel, or note why it is none."""
-        if name in self.channels or name in self.unreadable:
-            self.channels.pop(name, None)
-            self.unreadable[name] = "there are several of this name; rename all but one"
+        """Add a channel, or note why it is none; an array of its own is taken over, not copied."""
+        if name in self:
+            self.refuse(name, "")
             return
         array = np.asarray(values)
-        if array.dtype.kind not in "fiub":
-            self.unreadable[name] = f"is of type {array.dtype}; it must be real numbers"
-        elif array.size == 0 or max(array.shape, default=1) != array.size:
-            self.unreadable[name] = (
-                f"is an array of shape {array.shape}; it must be a vector of real numbers"
-            )
-        else:
-            self.channels[name] = RawChannel(array.reshape(-1).astype(np.float64), t_s, unit)
+        if reason := no_vector(array.dtype, array.shape):
+            self.refuse(name, reason)
+            return
+        self._check_name(name)
+        stamps = None if t_s is None else frozen(t_s)
+        self.channels[name] = RawChannel(frozen(array), stamps, unit)
+
+    def refuse(self, name: str, reason: str) -> None:
+        """Note why a channel can not be read."""
+        if name in self:
+            self.channels.pop(name, None)
+            reason = "there are several of this name; rename all but one"
+        self._check_name(name)
+        self.unreadable[name] = reason
+
+    def _check_name(self, name: str) -> None:
+        """Refuse a file with a name too long, or with too many.
+
+        Raises
+        ------
+        LogError
+            It goes beyond `LONGEST_NAME` or `MOST_NAMES`.
+
+        """
+        check_names(self.path, len(self.channels) + len(self.unreadable), len(name))
 
 
-Reader = Callable[[Path, Budget], RawFile]
+def no_vector(kind: np.dtype[Any], shape: tuple[int, ...]) -> str:
+    """Say why an array is no vector of real numbers, or nothing."""
+    if kind.kind not in "fiub":
+        return f"is of type {kind}; it must be real numbers"
+    size = math.prod(shape)
+    if size == 0 or max(shape, default=1) != size:
+        return f"is an array of shape {shape}; it must be a vector of real numbers"
+    return ""
 
 
-def file_digest(path: Path) -> str:
-    """Return the SHA-256 of a log file.
+def frozen(array: npt.NDArray[Any]) -> Array:
+    """Return a read-only vector of the numbers; the array itself where it can be."""
+    flat = array if array.ndim == 1 else array.reshape(-1)
+    if flat.dtype != np.float64 or flat.base is not None or not flat.flags.c_contiguous:
+        flat = flat.astype(np.float64)
+    flat.setflags(write=False)
+    return flat
+
+
+def check_names(path: Path, count: int, longest: int = 0) -> None:
+    """Refuse a file with too many channels, or too long a name.
 
     Raises
     ------
     LogError
-        The file is missing, can not be read, or is empty.
+        ``count`` is above `MOST_NAMES`, or ``longest`` above `LONGEST_NAME`.
 
     """
-    try:
-        if path.exists() and not path.is_file():
-            raise LogError(f"{path}: can not be read (it is no file); give the path of a log file")
-        with path.open("rb") as file:
-            digest = hashlib.file_digest(file, "sha256").hexdigest()
-            size = file.tell()
-    except FileNotFoundError:
-        raise LogError(f"{path}: there is no such file; check the path") from None
-    except (OSError, ValueError) as error:
-        raise LogError(f"{path}: can not be read ({error}); give the path of a log file") from None
-    if not size:
-        raise LogError(f"{path.name}: the file is empty; export the log again")
-    return digest
+    if count > MOST_NAMES:
+        raise LogError(
+            f"{path.name}: has more than {MOST_NAMES:,} channels; at most so many are read: "
+            "export fewer"
+        )
+    if longest > LONGEST_NAME:
+        raise LogError(
+            f"{path.name}: the name of a channel has {longest:,} characters; it must have at most "
+            f"{LONGEST_NAME:,}: rename it"
+        )
+
+
+Reader = Callable[[Path, Budget], RawFile]
 
 
 def need(module: str, package: str, extra: str, path: Path, what: str) -> Any:  # noqa: ANN401
@@ -152,6 +193,23 @@ def _quiet() -> Iterator[None]:
     finally:
         logging.disable(level)
         sys.unraisablehook = hook
+
+
+def check_claim(path: Path, what: str, claimed_bytes: float, most_bytes: float) -> None:
+    """Refuse a claim of more than the file can hold, before memory is taken for it.
+
+    Raises
+    ------
+    LogError
+        More is claimed, or less than nothing.
+
+    """
+    if not 0 <= claimed_bytes <= most_bytes:
+        raise LogError(
+            f"{path.name}: {what} claims {claimed_bytes:.6g} bytes; a file of "
+            f"{path.stat().st_size} bytes can hold at most {most_bytes:.6g} of it: it is damaged; "
+            "export the log again"
+        )
 
 
 def check_size(path: Path, name: str, samples: int, most: float = MOST_SAMPLES) -> None:

@@ -8,9 +8,10 @@ from typing import Any
 
 from breakaway.errors import LogError
 from breakaway.logs.assemble import assemble
-from breakaway.logs.budget import SHARE, Budget, free_memory_bytes
+from breakaway.logs.budget import Budget
 from breakaway.logs.csv import read_csv
 from breakaway.logs.detect import detect
+from breakaway.logs.digest import digested
 from breakaway.logs.emps import emps_layout, is_emps
 from breakaway.logs.hdf5 import read_hdf5
 from breakaway.logs.log import Log
@@ -19,7 +20,7 @@ from breakaway.logs.mat import read_mat
 from breakaway.logs.mcap import read_mcap
 from breakaway.logs.mdf import read_mdf
 from breakaway.logs.parquet import read_parquet
-from breakaway.logs.raw import Reader, file_digest
+from breakaway.logs.raw import Reader
 from breakaway.logs.tdms import read_tdms
 
 READERS: dict[str, Reader] = {
@@ -40,6 +41,8 @@ def read_log(
     path: str | Path,
     mapping: str | Path | Mapping[str, Any] | None = None,
     format: str | None = None,
+    *,
+    memory_bytes: float | None = None,
 ) -> Log:
     r"""Read a measured log.
 
@@ -77,6 +80,9 @@ def read_log(
         ``channels`` or ``csv``.
     format : str, optional
         One of `FORMATS`; by default as the file's first bytes, else its suffix, say.
+    memory_bytes : float, optional
+        Most memory that the content of the file may take; by default half of what is free. The
+        log takes up to as much again.
 
     Returns
     -------
@@ -87,7 +93,8 @@ def read_log(
     LogError
         The file or the mapping is missing or damaged, a package for the format is missing, a
         channel is missing, has no unit or no stamps; without a mapping also, where time,
-        position or force are not found. And as `Log` says.
+        position or force are not found; the file takes more memory than it may, goes beyond
+        another limit, or changes while it is read. And as `Log` says.
 
     Notes
     -----
@@ -111,13 +118,13 @@ def read_log(
 
     """
     path = Path(path)
-    digest = file_digest(path)
-    rules, origin = load_mapping(mapping, path)
-    kind = format or rules.format or detect(path)
-    if kind not in FORMATS:
-        raise LogError(f"format '{kind}' is unknown; it must be one of {', '.join(FORMATS)}")
-    budget = Budget(path.name, SHARE * free_memory_bytes())
-    raw = read_csv(path, budget, rules.csv) if kind == "csv" else READERS[kind](path, budget)
+    budget = Budget.of(path, memory_bytes)
+    with digested(path) as digest:
+        rules, origin = load_mapping(mapping, path)
+        kind = format or rules.format or detect(path)
+        if kind not in FORMATS:
+            raise LogError(f"format '{kind}' is unknown; it must be one of {', '.join(FORMATS)}")
+        raw = read_csv(path, budget, rules.csv) if kind == "csv" else READERS[kind](path, budget)
     if kind == "emps" or (kind == "mat" and not rules.channels and is_emps(raw)):
         return assemble(*emps_layout(raw), digest)
     log = assemble(raw, rules, digest)

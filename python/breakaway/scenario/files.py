@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +11,7 @@ import tomli_w
 
 from breakaway.errors import ScenarioError
 from breakaway.output import write_atomically
+from breakaway.reading import table_of, text_of
 from breakaway.scenario.actuator import Piezo
 from breakaway.scenario.method import Method
 from breakaway.scenario.model import Model
@@ -153,12 +153,7 @@ def parse_toml(model: type[AnyModel], text: str, source: str) -> AnyModel:
         It is not TOML, or a value is not valid; the message names every such field.
 
     """
-    if text.startswith("\ufeff"):
-        raise ScenarioError(f"{source}: starts with a byte order mark; save it as plain UTF-8")
-    try:
-        values = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # also numbers too long, tables too deep
-        raise ScenarioError(f"{source}: is not TOML: {error}") from None
+    values = table_of(text, source, ScenarioError)
     try:
         return model.parse(values)
     except ScenarioError as error:
@@ -168,14 +163,9 @@ def parse_toml(model: type[AnyModel], text: str, source: str) -> AnyModel:
 
 
 def _read(path: Path, presets: list[str]) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        near = difflib.get_close_matches(str(path), presets, n=1, cutoff=0.5)
-        hint = f"did you mean {near[0]}?" if near else f"presets: {', '.join(presets)}"
-        raise ScenarioError(f"{path}: is neither a file nor a preset; {hint}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise ScenarioError(f"{path}: can not be read as text: {error}") from None
+    near = difflib.get_close_matches(str(path), presets, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]}?" if near else f"presets: {', '.join(presets)}"
+    return text_of(path, ScenarioError, f"is neither a file nor a preset; {hint}")
 
 
 def scenario_toml(scenario: Scenario) -> str:

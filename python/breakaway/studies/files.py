@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 from breakaway.errors import ScenarioError, StudyError
+from breakaway.reading import table_of, text_of
 from breakaway.scenario.files import preset_names
 from breakaway.studies.study import KINDS, Study
 
@@ -67,18 +67,8 @@ def load_table(
 
     """
     file = Path(path)
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise StudyError(f"{file}: there is no such file; give the path of a {what}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(f"{file}: can not be read as text: {error}") from None
-    if text.startswith("\ufeff"):
-        raise StudyError(f"{file}: starts with a byte order mark; save it as plain UTF-8")
-    try:
-        values = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise StudyError(f"{file}: is not TOML: {error}") from None
+    missing = f"there is no such file; give the path of a {what}"
+    values = table_of(text_of(file, StudyError, missing), file, StudyError)
     try:
         return build(values, file.parent)
     except (StudyError, ScenarioError) as error:
