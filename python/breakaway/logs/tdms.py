@@ -129,8 +129,8 @@ def _no_scale(properties: Mapping[str, Any]) -> str:
             return f"has the scale {found[1][:40]}; at most {MOST_SCALES} are followed"
         if found and str(kind) not in SCALES:
             return (
-                f"is scaled by {str(kind)[:40]!r}, which is not known; its raw values are no measurement: "
-                "export scaled values"
+                f"is scaled by {str(kind)[:40]!r}, which is not known; its raw values are no "
+                "measurement: export scaled values"
             )
     return ""
 
