@@ -238,6 +238,20 @@ def test_mcap_messages_beyond_a_limit(tmp_path: Path, data: str, words: str) -> 
         read_log(path, {"channels": channels})
 
 
+def test_tdms_lists_of_objects_count(tmp_path: Path) -> None:
+    path = tmp_path / "segments.tdms"
+    with TdmsWriter(path) as writer:
+        for k in range(200):
+            changed = {"number": k}  # so that each segment has a list of its own
+            writer.write_segment(
+                [ChannelObject("Rig", f"c{c}", np.zeros(1), changed) for c in range(20)]
+            )
+    with pytest.raises(LogError, match="with its segments it takes"):
+        read_log(path, memory_bytes=100_000)
+    with pytest.raises(LogError, match="column 'position_m' is missing"):
+        read_log(path)
+
+
 # Many names, and long ones
 
 

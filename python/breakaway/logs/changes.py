@@ -11,7 +11,9 @@ import numpy.typing as npt
 from breakaway.errors import LogError
 from breakaway.logs.channel import MINIMUM_ROWS, Array, Channel
 from breakaway.logs.findings import gaps
-from breakaway.logs.raw import MOST_SAMPLES
+
+MOST_SAMPLES = 2**28
+"""Most samples that a channel is resampled to: 2 GiB of numbers."""
 
 
 def same_stamps(first: Channel, other: Channel) -> bool:

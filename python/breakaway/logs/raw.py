@@ -26,9 +26,6 @@ from breakaway.logs.channel import Array
 DEFLATE_RATIO = 1032
 """The most that zlib compresses; a file that claims more numbers than this allows is damaged."""
 
-MOST_SAMPLES = 2**28
-"""A channel with more samples (2 GiB of numbers) is refused."""
-
 MOST_NAMES = 16_384
 """Most channels of a file, those that can not be read included; as many as a spreadsheet has."""
 
@@ -209,14 +206,4 @@ def check_claim(path: Path, what: str, claimed_bytes: float, most_bytes: float) 
             f"{path.name}: {what} claims {claimed_bytes:.6g} bytes; a file of "
             f"{path.stat().st_size} bytes can hold at most {most_bytes:.6g} of it: it is damaged; "
             "export the log again"
-        )
-
-
-def check_size(path: Path, name: str, samples: int, most: float = MOST_SAMPLES) -> None:
-    """Refuse a number of samples that the file can not hold, before memory is taken for it."""
-    if not 0 <= samples <= min(most, MOST_SAMPLES):
-        raise LogError(
-            f"{path.name}: '{name}' claims {samples:.6g} samples; a file of "
-            f"{path.stat().st_size} bytes can hold at most {min(most, MOST_SAMPLES):.6g}: it is "
-            "damaged or too large; export the log again, or in parts"
         )

@@ -134,11 +134,10 @@ def _add(raw: RawFile, group: Group, found: list[_Series], names: Counter[str]) 
         if names[name] > 1:
             name = f"{group.number}/{name}"
         why_not = series.why_not or why_no_stamps
-        is_first = name not in raw.channels and name not in raw.unreadable
-        raw.add(name, NO_ROWS if why_not else series.values, t_s, series.unit)
-        if why_not and is_first:
-            raw.unreadable[name] = why_not
-        series.values = NO_ROWS  # of which there is a copy now
+        if why_not:
+            raw.refuse(name, why_not)
+        else:
+            raw.add(name, series.values, t_s, series.unit)
 
 
 def _stamps(clock: _Series | None, found: list[_Series]) -> tuple[Array | None, str]:

@@ -173,7 +173,7 @@ def _unpacked(blocks: Blocks, block: Block, budget: Budget) -> bytes:
             f"{blocks.name}: is packed in way {way}, which is not read; export it unpacked, or as "
             "MDF 4.1"
         )
-    budget.take(f"the packed block at byte {block.place}", 2 * size)
+    budget.take(f"the packed block at byte {block.place}", 0, 2 * size + packed_size)
     unpacker = zlib.decompressobj()
     data = unpacker.decompress(blocks.read(begin, packed_size), size + 1)
     if len(data) != size:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from breakaway.errors import LogError
 from breakaway.logs.mdf.blocks import FIRST, Block, Blocks
+from breakaway.logs.raw import MOST_NAMES
 
 MASTERS, VIRTUAL = (2, 3), (3, 6)
 """Types of channels that count along a group, and of those whose raw value is the row."""
@@ -14,9 +15,6 @@ MASTERS, VIRTUAL = (2, 3), (3, 6)
 OF_VARIABLE_LENGTH = 1
 TIME = 1
 """What a master channel counts: time, not angle, distance or index."""
-
-MOST_CHANNELS = 200_000
-"""Most channels of a file, all groups together."""
 
 VLSD_GROUP, ALL_INVALID, SOME_INVALID = 1, 1, 2
 """Flags of groups and of channels."""
@@ -120,9 +118,9 @@ def data_groups(blocks: Blocks) -> list[DataGroup]:
             groups.append(group)
             number += not group.is_vlsd
             channels += len(group.channels)
-            if channels > MOST_CHANNELS:
+            if channels > MOST_NAMES:
                 raise LogError(
-                    f"{blocks.name}: has more than {MOST_CHANNELS} channels; export fewer of them"
+                    f"{blocks.name}: has more than {MOST_NAMES:,} channels; export fewer of them"
                 )
         if id_bytes not in (0, 1, 2, 4, 8) or (not id_bytes and len(groups) > 1):
             raise blocks.damaged(block.place, f"numbers {len(groups)} groups by {id_bytes} bytes")
