@@ -4,11 +4,13 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 PEERS := $(VENV)/peers
+FUZZ := $(VENV)/fuzz
+FUZZ_SECONDS ?= 600
 UV := $(BIN)/uv --quiet
 RUST_SOURCES := $(shell find crates -not -path '*/tests/*' \( -name '*.rs' -o -name 'Cargo.toml' \)) Cargo.toml Cargo.lock pyproject.toml
 CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
 
-.PHONY: help demo test test-firmware lint bench peers docs lock clean
+.PHONY: help demo test test-firmware lint bench peers fuzz docs lock clean
 
 help:
 	@echo "make demo    set up, then reproduce the paper into out/reproduction"
@@ -17,6 +19,7 @@ help:
 	@echo "make lint    formatting, static checks, layer rules, locks, known faults"
 	@echo "make bench   measure speed and memory, into bench/results.json"
 	@echo "make peers   the same loop in other tools, into bench/peers/results.md"
+	@echo "make fuzz    damage files of others for FUZZ_SECONDS each, guided by coverage"
 	@echo "make docs    Rust API pages, and the pictures of the README"
 	@echo "make lock    resolve the Python lock files anew"
 
@@ -46,6 +49,9 @@ bench: $(VENV)/.built
 
 peers: $(VENV)/.built $(PEERS)/.installed
 	PYTHONPATH=python $(PEERS)/bin/python -m bench.peers
+
+fuzz: $(VENV)/.built $(FUZZ)/.installed
+	PYTHONPATH=python:. $(FUZZ)/bin/python -m fuzz all -max_total_time=$(FUZZ_SECONDS)
 
 docs: $(VENV)/.built
 	cargo doc --quiet --locked --workspace --exclude breakaway-python --no-deps
@@ -79,11 +85,17 @@ $(PEERS)/.installed: $(VENV)/.runtime bench/peers/requirements.lock
 	$(UV) pip install --python $(PEERS)/bin/python --require-hashes -r bench/peers/requirements.lock
 	@touch $@
 
+$(FUZZ)/.installed: $(VENV)/.runtime fuzz/requirements.lock
+	$(PYTHON) -m venv $(FUZZ)
+	$(UV) pip install --python $(FUZZ)/bin/python --require-hashes -r fuzz/requirements.lock
+	@touch $@
+
 lock: $(VENV)/.installer
 	printf 'pip\nuv\n' | $(UV) pip compile - --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --no-emit-index-url -o requirements/installer.lock
 	$(UV) pip compile pyproject.toml --all-extras --group build --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/runtime.lock
 	$(UV) pip compile pyproject.toml --all-extras --group build --group dev --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o requirements/dev.lock
 	$(UV) pip compile pyproject.toml bench/peers/requirements.in --constraint requirements/runtime.lock --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o bench/peers/requirements.lock
+	$(UV) pip compile pyproject.toml fuzz/requirements.in --all-extras --group dev --constraint requirements/dev.lock --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url -o fuzz/requirements.lock
 
 clean:
 	rm -rf $(VENV) target out

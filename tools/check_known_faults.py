@@ -14,7 +14,12 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
-LOCKS = ("requirements/installer.lock", "requirements/dev.lock", "bench/peers/requirements.lock")
+LOCKS = (
+    "requirements/installer.lock",
+    "requirements/dev.lock",
+    "bench/peers/requirements.lock",
+    "fuzz/requirements.lock",
+)
 
 
 def main() -> int:

@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PEERS = ROOT / "bench" / "peers" / "requirements.lock"
+OTHERS = [ROOT / "bench/peers/requirements.lock", ROOT / "fuzz/requirements.lock"]
 PUBLIC = {"github.com", "pypi.org", "files.pythonhosted.org"}
 
 
 def faults() -> list[str]:
     """Every line that should not be there."""
     found = []
-    for path in [ROOT / "Cargo.lock", *sorted(ROOT.glob("requirements/*.lock")), PEERS]:
+    for path in [ROOT / "Cargo.lock", *sorted(ROOT.glob("requirements/*.lock")), *OTHERS]:
         text = path.read_text(encoding="utf-8")
         for number, line in enumerate(text.splitlines(), start=1):
             for host in re.findall(r"://([^/\s\"#]+)", line):
