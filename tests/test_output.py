@@ -11,6 +11,7 @@ import pytest
 import breakaway as bk
 from breakaway.errors import OutputError
 from breakaway.output import output_folder, write_atomically
+from breakaway.ownership import RUN
 from breakaway.run_output import run_summary, write_run
 
 
@@ -76,7 +77,7 @@ def test_a_full_device_is_an_output_error() -> None:
 
 def test_a_folder_is_filled_at_the_end(tmp_path: Path) -> None:
     folder = tmp_path / "deep" / "out"
-    with output_folder(folder) as staging:
+    with output_folder(folder, RUN) as staging:
         (staging / "a.txt").write_text("a")
         assert not (folder / "a.txt").exists()
     assert [path.name for path in folder.iterdir()] == ["a.txt"]
@@ -89,7 +90,7 @@ def test_a_folder_stays_as_it_was_when_its_block_fails(
     (tmp_path / "a.txt").write_text("old")
 
     def fail_halfway() -> None:
-        with output_folder(tmp_path) as staging:
+        with output_folder(tmp_path, RUN) as staging:
             (staging / "a.txt").write_text("new")
             raise error
 

@@ -415,9 +415,10 @@ def _write(
     from json import dumps
 
     from breakaway.output import output_folder
+    from breakaway.ownership import DESIGN
     from breakaway.plots.style import save_figure
 
-    with output_folder(folder) as staging:
+    with output_folder(folder, DESIGN) as staging:
         text = dumps(plain(content), indent=2, allow_nan=False) + "\n"
         (staging / "design.json").write_text(text, encoding="utf-8", newline="\n")
         for one in judged:
