@@ -23,7 +23,7 @@ from breakaway.output import (
 from breakaway.ownership import refuse_links
 from breakaway.reading import read_json
 from breakaway.studies.manifest import MANIFEST, deciding, kind_of, read_manifest
-from breakaway.studies.part_files import PARTS
+from breakaway.studies.part_files import PARTS, parts_in
 from breakaway.studies.pieces import Pieces
 
 SUMMARY, LOCK = "summary.json", ".lock"
@@ -163,7 +163,19 @@ def _remove_made(folder: Path, *, existed: bool) -> None:
             folder.rmdir()
 
 
-def read_summary(folder: Path, pieces: Pieces) -> dict[str, Any]:
+def finished_names(pieces: Pieces) -> list[str]:
+    """Give the names of the summary and of all parts, where no part is to come any more."""
+    there = parts_in(pieces.folder)  # before the digests, which come first
+    pieces.reread()
+    return [*sorted({*there, *pieces.names(PARTS)}), SUMMARY]
+
+
+def is_finished(pieces: Pieces) -> bool:
+    """Whether there is a summary, and it and all parts are as they were written."""
+    return all(pieces.flaw(name) is None for name in finished_names(pieces))
+
+
+def read_summary(pieces: Pieces) -> dict[str, Any]:
     """Read the summary of a finished folder.
 
     Raises
@@ -172,12 +184,12 @@ def read_summary(folder: Path, pieces: Pieces) -> dict[str, Any]:
         The summary, or a part of what it sums up, is missing or not as it was written.
 
     """
-    pieces.reread()
-    for name in [SUMMARY, *pieces.names(PARTS)]:
+    for name in finished_names(pieces):
         pieces.refuse_flawed(name)
-    summary = read_json(folder / SUMMARY, MOST_SUMMARY_BYTES)
+    path = pieces.folder / SUMMARY
+    summary = read_json(path, MOST_SUMMARY_BYTES)
     if not isinstance(summary, dict):
-        raise StudyError(f"{folder / SUMMARY}: is no table; go on with --resume to have it again")
+        raise StudyError(f"{path}: is no table; go on with --resume to have it again")
     return summary
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 from breakaway.errors import StudyError
 from breakaway.output import append_inside, remove_inside, write_inside
 from breakaway.ownership import refuse_links
-from breakaway.reading import open_regular, read_text
+from breakaway.reading import open_regular
 
 DIGESTS = "digests.txt"
 """The journal: a digest and a name in each line."""
@@ -69,11 +69,11 @@ class Pieces:
         self.identity = identity
         """Digest of all that determines the study."""
         self._known: dict[str, str] = {}
-        self._sound: dict[str, Signature] = {}
+        self._sound: dict[str, tuple[str, Signature]] = {}
         self.reread()
 
     def reread(self) -> None:
-        """Read the journal, to which another process may have added.
+        """Read the journal, to which another process may have added; damaged lines do not count.
 
         Raises
         ------
@@ -83,14 +83,19 @@ class Pieces:
         """
         path = self.folder / DIGESTS
         try:
-            text = read_text(path, MOST_DIGESTS_BYTES) if path.exists() else ""
-        except (OSError, ValueError) as error:
+            with open_regular(path) as file:
+                content = file.read(MOST_DIGESTS_BYTES + 1)
+            if len(content) > MOST_DIGESTS_BYTES:
+                raise OSError(f"has more than {MOST_DIGESTS_BYTES} bytes")  # noqa: TRY301
+        except FileNotFoundError:
+            content = b""
+        except OSError as error:
             raise StudyError(
-                f"{path}: can not be read as a list of digests: {error}; remove it, and go on with "
-                "--resume to compute everything again"
+                f"{path}: can not be read: {error.strerror or error}; remove it, and go on with "
+                "--resume to have everything computed again"
             ) from None
-        found = (LINE.fullmatch(line) for line in text.split("\n")[:-1])
-        self._known = {match[2]: match[1] for match in found if match}
+        lines = content.decode("utf-8", "replace").split("\n")[:-1]
+        self._known = {match[2]: match[1] for line in lines if (match := LINE.fullmatch(line))}
 
     def names(self, prefix: str = "") -> list[str]:
         """Give the names of all files that have a digest, and start so."""
@@ -104,7 +109,7 @@ class Pieces:
         path = self.folder / name
         try:
             signature = _signature(path)
-            if name in self._known and self._sound.get(name) == signature:
+            if (self._known.get(name), signature) == self._sound.get(name):
                 return None
             found = self._digest_of_file(path, name)
         except FileNotFoundError:
@@ -115,13 +120,8 @@ class Pieces:
             return f"has no digest in {DIGESTS}"
         if found != self._known[name]:
             return f"is not the one that was written (see {DIGESTS})"
-        self._sound[name] = signature
+        self._sound[name] = found, signature
         return None
-
-    def are_finished(self, parts: str, summary: str) -> bool:
-        """Whether the summary and all files whose names start as ``parts`` are as written."""
-        self.reread()
-        return all(self.flaw(name) is None for name in [summary, *self.names(parts)])
 
     def refuse_flawed(self, name: str) -> None:
         """Refuse to read a file that is not the one that was written.
@@ -152,7 +152,7 @@ class Pieces:
             refuse_links(path.parent)
         self._note({name: digest_of(self.identity, name, content)})
         write_inside(path, content)
-        self._sound[name] = _signature(path)
+        self._sound[name] = self._known[name], _signature(path)
 
     def note_staged(self, staging: Path) -> list[str]:
         """Note the digests of files that are moved to the folder next, and give their names."""

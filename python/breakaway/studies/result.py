@@ -15,9 +15,9 @@ from breakaway.batch.batch import as_pandas
 from breakaway.batch.columns import at_run, with_nominal_controller
 from breakaway.errors import StudyError
 from breakaway.run import Run
-from breakaway.studies.folder import SUMMARY, read_summary
+from breakaway.studies.folder import SUMMARY, finished_names, is_finished, read_summary
 from breakaway.studies.manifest import MANIFEST, kind_of, read_manifest
-from breakaway.studies.part_files import PARTS, part_name, parts_in
+from breakaway.studies.part_files import part_name, parts_in
 from breakaway.studies.parts import part_schema
 from breakaway.studies.pieces import Pieces
 from breakaway.studies.study import Study
@@ -47,7 +47,7 @@ class StudyResult:
     @property
     def finished(self) -> bool:
         """Whether the study came to its end, and all parts and the summary are as it wrote them."""
-        return self._pieces.are_finished(PARTS, SUMMARY)
+        return is_finished(self._pieces)
 
     @property
     def part_files(self) -> list[Path]:
@@ -76,7 +76,7 @@ class StudyResult:
                 f"{self.folder}: is not finished, {len(self.part_files)} parts are; "
                 "go on with --resume"
             )
-        return read_summary(self.folder, self._pieces)
+        return read_summary(self._pieces)
 
     @property
     def dataset(self) -> Any:  # noqa: ANN401 - pyarrow has no type stubs
@@ -96,13 +96,12 @@ class StudyResult:
         )
 
     def _refuse_flawed_parts(self) -> None:
-        there = parts_in(self.folder)
-        self._pieces.reread()
-        if (self.folder / SUMMARY).exists():  # so that no part is to come
-            there = sorted({*there, *self._pieces.names(PARTS)})
+        if (self.folder / SUMMARY).exists():
+            names = finished_names(self._pieces)
         else:
-            there = [part_name(number) for number in range(len(there))]
-        for name in there:
+            names = [part_name(number) for number in range(len(self.part_files))]
+            self._pieces.reread()
+        for name in names:
             self._pieces.refuse_flawed(name)
 
     def scan(self, columns: Sequence[str] | None = None, filter: Any = None) -> Any:  # noqa: ANN401

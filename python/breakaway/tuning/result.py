@@ -10,9 +10,8 @@ from typing import Any
 from breakaway.errors import StudyError
 from breakaway.scenario.files import load_method
 from breakaway.scenario.method import Method
-from breakaway.studies.folder import SUMMARY, read_summary
+from breakaway.studies.folder import SUMMARY, is_finished, read_summary
 from breakaway.studies.manifest import MANIFEST, kind_of, read_manifest
-from breakaway.studies.part_files import PARTS
 from breakaway.studies.pieces import Pieces
 from breakaway.tuning.evaluation import Evaluation
 from breakaway.tuning.problem import Tuning
@@ -41,7 +40,7 @@ class TuningResult:
     @property
     def finished(self) -> bool:
         """Whether it came to its end, and its trials and the summary are as it wrote them."""
-        return self._pieces.are_finished(PARTS, SUMMARY)
+        return is_finished(self._pieces)
 
     @cached_property
     def tuning(self) -> Tuning:
@@ -77,7 +76,7 @@ class TuningResult:
                 f"{self.folder}: is not finished, {len(self.evaluations)} trials are; go on with "
                 "--resume"
             )
-        return read_summary(self.folder, self._pieces)
+        return read_summary(self._pieces)
 
     @property
     def best(self) -> Method:
