@@ -115,8 +115,8 @@ def test_the_folder_says_all(whole, robustness):
     assert done.finished
     assert done.study == robustness
     assert {path.name for path in whole.iterdir()} == {
-        ".lock", "digests.txt", "manifest.json", "parts", "robustness.png", "robustness.svg", "study.toml",
-        "summary.json", "trail.csv",
+        ".lock", "digests.txt", "manifest.json", "parts", "robustness.png", "robustness.svg",
+        "study.toml", "summary.json", "trail.csv",
     }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """Whatever ends a tuning, finished trials stay, and going on gives the same bytes."""
 
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -146,8 +147,6 @@ def test_more_trials_may_be_asked_for(asked, whole, tmp_path):
 
 
 def test_a_finished_tuning_computes_nothing(asked, whole, tmp_path, monkeypatch):
-    import shutil
-
     folder = shutil.copytree(whole, tmp_path / "done")
     monkeypatch.setattr(
         "breakaway.tuning.evaluation.run_trial", lambda *_, **__: pytest.fail("simulated")
@@ -169,8 +168,6 @@ def test_a_finished_tuning_computes_nothing(asked, whole, tmp_path, monkeypatch)
     ],
 )
 def test_damaged_trials_are_tried_again_and_said(asked, whole, tmp_path, damage):
-    import shutil
-
     folder = shutil.copytree(whole, tmp_path / "damaged")
     path = folder / "parts" / "trials.jsonl"
     path.write_bytes(damage(path.read_bytes()))
@@ -178,6 +175,41 @@ def test_damaged_trials_are_tried_again_and_said(asked, whole, tmp_path, damage)
     bk.tune(asked, folder, resume=True, notice=said.append)
     assert contents(folder) == contents(whole)
     assert len(said) == 1 and said[0].startswith("trials.jsonl: ")
+
+
+def foreign(asked, tmp_path):
+    """Give the first trials of the same tuning with other parts: same numbers, other scores."""
+    folder = tmp_path / "other"
+    bk.tune(asked.model_copy(update={"seed": 5}), folder, trials=2)
+    return (folder / "parts" / "trials.jsonl").read_bytes().splitlines(keepends=True)
+
+
+@pytest.mark.parametrize("line", [0, 1])
+def test_a_foreign_trial_is_tried_again_and_not_read(asked, whole, tmp_path, line):
+    folder = shutil.copytree(whole, tmp_path / "mixed")
+    path = folder / "parts" / "trials.jsonl"
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join([*lines[:line], foreign(asked, tmp_path)[line], *lines[line + 1 :]]))
+    done = bk.open_tuning(folder)
+    assert not done.finished
+    for read in (lambda: done.evaluations, lambda: done.summary, lambda: done.best):
+        with pytest.raises(bk.StudyError, match=r"trials\.jsonl: .*--resume"):
+            read()
+    said = []
+    bk.tune(asked, folder, resume=True, notice=said.append)
+    assert len(said) == 1 and said[0].startswith(f"trials.jsonl: line {line + 1} ")
+    assert contents(folder) == contents(whole)
+
+
+def test_an_edited_method_is_not_read(asked, whole, tmp_path):
+    folder = shutil.copytree(whole, tmp_path / "edited")
+    path = folder / "best.toml"
+    path.write_text(path.read_text() + "# mine\n")
+    done = bk.open_tuning(folder)
+    with pytest.raises(bk.StudyError, match=r"best\.toml: is not the one that was written"):
+        _ = done.best
+    bk.tune(asked, folder, resume=True)
+    assert contents(folder) == contents(whole)
 
 
 def test_without_resume_a_tuning_is_left_alone(asked, whole):

@@ -110,6 +110,11 @@ def design(
     from breakaway.scenario import load_scenario
 
     asked = load_scenario(scenario)
+    if out is not None:  # before the work, not after it
+        from breakaway.output import claim
+        from breakaway.ownership import DESIGN
+
+        claim(out, DESIGN, [DESIGN.marker])
     with busy("judging the loops ..."):
         judged = [_judge(asked, one) for one in _gain_sets(asked)]
     stable = bool(judged) and all(one.stable for one in judged)

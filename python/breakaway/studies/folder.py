@@ -40,10 +40,10 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
     Raises
     ------
     StudyError
-        The folder holds the same and is not to be resumed, another one, files of others, or what
-        another process is running.
+        The folder holds the same and is not to be resumed, another one, files of others, a
+        symbolic link, or what another process is running.
     OutputError
-        The folder can not be written, or there is a symbolic link in it.
+        The folder can not be written.
 
     """
     called = kind_of(manifest)
@@ -75,7 +75,10 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
 def _refuse_links_in(folder: Path) -> None:
     for inside in (folder, folder / PARTS):
         if inside.is_dir():
-            refuse_links(*sorted(inside.iterdir()))
+            try:
+                refuse_links(*sorted(inside.iterdir()))
+            except OutputError as error:  # nothing can be gone on with
+                raise StudyError(str(error)) from None
 
 
 def _refuse_filled(folder: Path, called: str) -> None:
