@@ -48,13 +48,13 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
     """
     called = kind_of(manifest)
     existed = folder.exists()
-    _refuse_links_in(folder)
-    found = (folder / MANIFEST).exists()
-    if found:
-        _refuse_other(folder, read_manifest(folder), manifest, resume=resume)
-    else:
-        _refuse_filled(folder, called)
     try:
+        _refuse_links_in(folder)
+        found = (folder / MANIFEST).exists()
+        if found:
+            _refuse_other(folder, read_manifest(folder), manifest, resume=resume)
+        else:
+            _refuse_filled(folder, called)
         (folder / PARTS).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise not_written(folder, error) from None
