@@ -4,13 +4,22 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import breakaway as bk
 from breakaway.errors import OutputError
-from breakaway.output import output_folder, write_atomically
+from breakaway.output import (
+    append_inside,
+    output_folder,
+    remove_inside,
+    remove_leftovers,
+    write_atomically,
+    write_inside,
+)
+from breakaway.ownership import RUN
 from breakaway.run_output import run_summary, write_run
 
 
@@ -76,7 +85,7 @@ def test_a_full_device_is_an_output_error() -> None:
 
 def test_a_folder_is_filled_at_the_end(tmp_path: Path) -> None:
     folder = tmp_path / "deep" / "out"
-    with output_folder(folder) as staging:
+    with output_folder(folder, RUN) as staging:
         (staging / "a.txt").write_text("a")
         assert not (folder / "a.txt").exists()
     assert [path.name for path in folder.iterdir()] == ["a.txt"]
@@ -89,7 +98,7 @@ def test_a_folder_stays_as_it_was_when_its_block_fails(
     (tmp_path / "a.txt").write_text("old")
 
     def fail_halfway() -> None:
-        with output_folder(tmp_path) as staging:
+        with output_folder(tmp_path, RUN) as staging:
             (staging / "a.txt").write_text("new")
             raise error
 
@@ -97,6 +106,69 @@ def test_a_folder_stays_as_it_was_when_its_block_fails(
         fail_halfway()
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
     assert (tmp_path / "a.txt").read_text() == "old"
+
+
+@pytest.mark.parametrize("leads", ["file", "folder", "nowhere"])
+def test_a_folder_is_not_filled_over_a_link(tmp_path: Path, leads: str) -> None:
+    target, link = tmp_path / leads, tmp_path / "out" / "b.txt"
+    if leads == "file":
+        target.write_text("mine")
+    if leads == "folder":
+        target.mkdir()
+    link.parent.mkdir()
+    link.symlink_to(target)
+    with (
+        pytest.raises(OutputError, match=r"b\.txt: is a symbolic link, and nothing is written"),
+        output_folder(tmp_path / "out", RUN) as staging,
+    ):
+        (staging / "b.txt").write_text("new")
+    assert list(link.parent.iterdir()) == [link]
+    assert leads != "file" or target.read_text() == "mine"
+
+
+def test_a_folder_is_not_filled_over_files_of_others(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("mine")
+    with (
+        pytest.raises(
+            OutputError, match=r"a\.txt: is there already, and no metrics\.json of a run"
+        ),
+        output_folder(tmp_path, RUN) as staging,
+    ):
+        (staging / "a.txt").write_text("new")
+    assert (tmp_path / "a.txt").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    "write", [write_inside, append_inside, lambda path, _: remove_inside(path)]
+)
+def test_within_a_folder_no_link_is_followed(
+    tmp_path: Path, write: Callable[[Path, bytes], None]
+) -> None:
+    target, link = tmp_path / "target", tmp_path / "link"
+    target.write_text("mine")
+    link.symlink_to(target)
+    with pytest.raises(OutputError, match="link: is a symbolic link"):
+        write(link, b"new\n")
+    assert link.is_symlink()
+    assert target.read_text() == "mine"
+
+
+def test_only_our_leftovers_are_removed(tmp_path: Path) -> None:
+    others = tmp_path / "others"
+    others.mkdir()
+    (others / "mine.txt").write_text("mine")
+    folder = tmp_path / "folder"
+    (folder / ".writing.abcd_123").mkdir(parents=True)
+    (folder / ".writing.abcd_123" / "inner").symlink_to(others)
+    (folder / ".a.txt.0123456789abcdef").write_text("half")
+    (folder / ".writing.linked00").symlink_to(others)
+    (folder / ".writing.mine").mkdir()
+    (folder / ".a.txt.mine").write_text("mine")
+    remove_leftovers(folder)
+    assert sorted(path.name for path in folder.iterdir()) == [
+        ".a.txt.mine", ".writing.linked00", ".writing.mine"
+    ]  # fmt: skip
+    assert (others / "mine.txt").read_text() == "mine"
 
 
 def test_a_run_is_summarized_without_nan() -> None:

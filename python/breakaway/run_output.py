@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import Any
 
 from breakaway._core import __version__
-from breakaway.errors import OutputError
-from breakaway.output import output_folder
+from breakaway.output import output_folder, remove_inside
+from breakaway.ownership import RUN
 from breakaway.run import TRACE_UNITS, Run
 from breakaway.scenario.files import scenario_toml
 
 TRACE_FILES = ("trace.parquet", "trace.csv", "figure.png", "figure.svg")
 """Files of a run that has a trace."""
+FILES = ("scenario.toml", "metrics.json", *TRACE_FILES)
+"""All files that a run may have."""
 
 
 def run_summary(run: Run) -> dict[str, Any]:
@@ -62,7 +64,8 @@ def write_run(run: Run, folder: str | Path) -> list[Path]:
     Raises
     ------
     OutputError
-        The folder can not be written, or the disk is full; nothing is half written.
+        The folder can not be written, holds a result of another kind, or files of others under
+        these names; or the disk is full. Nothing is half written.
 
     Examples
     --------
@@ -91,15 +94,15 @@ def written_run(folder: Path) -> Iterator[Callable[[Run], list[Path]]]:
         written.extend(name for name in _names(run))
         return [folder / name for name in written]
 
-    with output_folder(folder) as staging:
+    with output_folder(folder, RUN, FILES) as staging:
         yield write
     for name in TRACE_FILES:
         if written and name not in written:
-            _remove(folder / name)
+            remove_inside(folder / name)
 
 
 def _names(run: Run) -> list[str]:
-    return ["scenario.toml", "metrics.json", *(TRACE_FILES if run.trace else ())]
+    return list(FILES) if run.trace else [name for name in FILES if name not in TRACE_FILES]
 
 
 def _write_files(run: Run, folder: Path) -> None:
@@ -143,10 +146,3 @@ def _write_trace(run: Run, folder: Path) -> None:
     with (folder / "trace.csv").open("wb") as file:
         file.write((",".join(run.trace) + "\n").encode())  # which pyarrow would quote
         csv.write_csv(trace, file, csv.WriteOptions(include_header=False))
-
-
-def _remove(path: Path) -> None:
-    try:
-        path.unlink(missing_ok=True)
-    except OSError as error:
-        raise OutputError(f"{path}: can not be removed: {error.strerror or error}") from None

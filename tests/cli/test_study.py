@@ -34,7 +34,7 @@ TABLES = {
     "sensitivity": {"indices.csv", "sensitivity.png", "sensitivity.svg"},
     "compare": {"outcomes.csv", "differences.csv", "compare.png", "compare.svg"},
 }
-ALWAYS = {"manifest.json", "summary.json", "study.toml"}
+ALWAYS = {"digests.txt", "manifest.json", "summary.json", "study.toml"}
 
 
 def write(tmp_path: Path, kind: str, /, **changes: str) -> Path:

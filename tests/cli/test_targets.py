@@ -10,6 +10,7 @@ import pytest
 import breakaway as bk
 from breakaway.errors import OutputError
 from breakaway.output import output_folder, write_atomically
+from breakaway.ownership import RUN
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def test_a_folder_in_the_way_stops_all_files(tmp_path, call):
 
 
 def test_a_folder_made_for_nothing_is_taken_away(tmp_path):
-    with pytest.raises(KeyboardInterrupt), output_folder(tmp_path / "new" / "out"):
+    with pytest.raises(KeyboardInterrupt), output_folder(tmp_path / "new" / "out", RUN):
         raise KeyboardInterrupt
     assert not (tmp_path / "new" / "out").exists()
 
@@ -80,7 +81,7 @@ def test_a_file_where_a_folder_has_to_be(tmp_path):
     (tmp_path / "file").write_text("")
     with (
         pytest.raises(OutputError, match="is a file, not a folder"),
-        output_folder(tmp_path / "file"),
+        output_folder(tmp_path / "file", RUN),
     ):
         pass
 

@@ -59,7 +59,14 @@ def test_a_tuning_says_its_result_and_lists_its_files(call: Call, tmp_path: Path
     summary = json.loads((out / "summary.json").read_text())
     for sentence in [*summary["result"], *(f"note: {note}" for note in summary["notes"])]:
         assert sentence in shown.stdout
-    tables = {"manifest.json", "summary.json", "trials.csv", "pareto.csv", "best.toml"}
+    tables = {
+        "digests.txt",
+        "manifest.json",
+        "summary.json",
+        "trials.csv",
+        "pareto.csv",
+        "best.toml",
+    }
     points = {row["file"] for row in summary["front"]}
     assert {p.name for p in out.iterdir()} == tables | points | FIGURES | {"parts", ".lock"}
     assert all(f"wrote {out / name}" in shown.stdout for name in tables | points | FIGURES)

@@ -33,8 +33,8 @@ def test_the_folder_has_everything(whole, done):
     courses = {f"course_{place}_{law}" for place in (1, 2, 3) for law in LAWS}
     figures = {"shares", "jump_against_peak", *courses}
     assert names == {
-        ".lock", "manifest.json", "comparison.toml", "table.csv", "summary.json", "index.html",
-        "parts", *(f"{name}.{kind}" for name in figures for kind in ("png", "svg")),
+        ".lock", "digests.txt", "manifest.json", "comparison.toml", "table.csv", "summary.json",
+        "index.html", "parts", *(f"{name}.{kind}" for name in figures for kind in ("png", "svg")),
     }  # fmt: skip
     assert len(list((whole / "parts").iterdir())) == 6
     summary = json.loads((whole / "summary.json").read_text())

@@ -9,6 +9,8 @@ import sys
 import time
 from pathlib import Path
 
+import pyarrow as arrow
+import pyarrow.parquet as parquet
 import pytest
 
 import breakaway as bk
@@ -122,6 +124,32 @@ def test_damaged_parts_are_computed_again_and_said(whole, tmp_path):
     assert [sentence.split()[0] for sentence in said[:3]] == [path.name for path in files[:3]]
     assert all(sentence.endswith("its 24 parts are computed again") for sentence in said[:3])
     assert said[3] == "part-000099.parquet does not belong to the comparison and was removed"
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_a_foreign_part_is_computed_again_and_said(whole, tmp_path):
+    """The same parts and columns, but for what became of them."""
+    folder = shutil.copytree(whole, tmp_path / "mixed")
+    path = folder / "parts" / "part-000001.parquet"
+    table = parquet.read_table(path)
+    place = table.schema.get_field_index("largest_jump_m")
+    moved = arrow.array(table["largest_jump_m"].to_numpy() * 2.0)
+    table = table.set_column(place, table.schema.field(place), moved)
+    parquet.write_table(table, path, write_page_checksum=True)
+    said = []
+    done = bk.compare_methods(
+        folder / "comparison.toml", out=folder, resume=True, notice=said.append
+    )
+    assert len(said) == 1 and said[0].startswith("part-000001.parquet is not the one that was ")
+    assert contents(folder) == contents(whole)
+    assert done.table == bk.compare_methods(whole / "comparison.toml").table
+
+
+def test_an_edited_table_is_written_anew(whole, tmp_path):
+    folder = shutil.copytree(whole, tmp_path / "edited")
+    (folder / "table.csv").write_text("mine")
+    bk.compare_methods(folder / "comparison.toml", out=folder, resume=True)
+    assert contents(folder) == contents(whole)
 
 
 @pytest.mark.parametrize(

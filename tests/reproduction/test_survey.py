@@ -119,7 +119,7 @@ def test_a_full_disk_tells_how_to_go_on(tmp_path, monkeypatch):
     def full(path, _):
         raise OutputError(f"{path}: can not be written: No space left on device; make room")
 
-    monkeypatch.setattr("breakaway.studies.parts.write_atomically", full)
+    monkeypatch.setattr("breakaway.studies.pieces.write_inside", full)
     with pytest.raises(OutputError, match="finished parts stay: resume it to go on"):
         SMALL.run(tmp_path / "figure_10")
 

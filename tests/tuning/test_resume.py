@@ -1,6 +1,7 @@
 """Whatever ends a tuning, finished trials stay, and going on gives the same bytes."""
 
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -9,7 +10,6 @@ import time
 import pytest
 
 import breakaway as bk
-from breakaway.tuning.records import Records
 
 from .conftest import SPEED, contents
 
@@ -58,7 +58,7 @@ def test_the_folder_says_all(asked, whole):
     names = {path.name for path in whole.iterdir()} - {"parts", ".lock"}
     points = {f"pareto_{i:02d}.toml" for i in range(1, 1 + len(done.front))}
     assert names == points | {
-        "manifest.json", "trials.csv", "pareto.csv", "best.toml", "summary.json"
+        "digests.txt", "manifest.json", "trials.csv", "pareto.csv", "best.toml", "summary.json"
     }  # fmt: skip
     lines = (whole / "trials.csv").read_text().splitlines()
     assert len(lines) == 25
@@ -83,7 +83,7 @@ def test_kill_9_loses_no_finished_trial(asked, whole, tmp_path):
 
     file, folder = tmp_path / "tuning.toml", tmp_path / "killed"
     file.write_text(tomli_w.dumps(asked.model_dump(exclude_none=True)))
-    records = Records(folder / "parts" / "trials.jsonl")
+    path = folder / "parts" / "trials.jsonl"
     moments, kept = random.Random(1), []
     for target in (4, 15):
         process = subprocess.Popen(
@@ -91,13 +91,13 @@ def test_kill_9_loses_no_finished_trial(asked, whole, tmp_path):
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
         )
-        while len(records.read()) < target:
+        while not path.exists() or path.read_bytes().count(b"\n") < target:
             assert process.poll() is None, process.communicate()
             time.sleep(0.002)
         time.sleep(0.03 * moments.random())
         process.send_signal(signal.SIGKILL)
         process.communicate()
-        kept.append(records.path.read_bytes())
+        kept.append(path.read_bytes())
         assert (whole / "parts" / "trials.jsonl").read_bytes().startswith(kept[-1])
     assert kept == sorted(kept, key=len)
     bk.tune(asked, folder, resume=True)
@@ -135,18 +135,18 @@ def test_more_trials_may_be_asked_for(asked, whole, tmp_path):
     folder = tmp_path / "more"
     bk.tune(asked, folder, trials=12)
     assert bk.open_tuning(folder).summary["trials"] == 12
-    (folder / "pareto_99.toml").write_text("")
-    (folder / "mine.toml").write_text("")
+    others = folder / "pareto_99.toml", folder / "mine.toml"  # which no tuning wrote
+    for path in others:
+        path.write_text("")
     bk.tune(asked, folder, trials=24, resume=True)
-    (folder / "mine.toml").unlink()
+    for path in others:
+        path.unlink()
     assert contents(folder) == contents(whole)
     with pytest.raises(bk.StudyError, match=r"trials: 12 is less than the 24 that .* holds; give"):
         bk.tune(asked, folder, trials=12, resume=True)
 
 
 def test_a_finished_tuning_computes_nothing(asked, whole, tmp_path, monkeypatch):
-    import shutil
-
     folder = shutil.copytree(whole, tmp_path / "done")
     monkeypatch.setattr(
         "breakaway.tuning.evaluation.run_trial", lambda *_, **__: pytest.fail("simulated")
@@ -168,8 +168,6 @@ def test_a_finished_tuning_computes_nothing(asked, whole, tmp_path, monkeypatch)
     ],
 )
 def test_damaged_trials_are_tried_again_and_said(asked, whole, tmp_path, damage):
-    import shutil
-
     folder = shutil.copytree(whole, tmp_path / "damaged")
     path = folder / "parts" / "trials.jsonl"
     path.write_bytes(damage(path.read_bytes()))
@@ -177,6 +175,41 @@ def test_damaged_trials_are_tried_again_and_said(asked, whole, tmp_path, damage)
     bk.tune(asked, folder, resume=True, notice=said.append)
     assert contents(folder) == contents(whole)
     assert len(said) == 1 and said[0].startswith("trials.jsonl: ")
+
+
+def foreign(asked, tmp_path):
+    """Give the first trials of the same tuning with other parts: same numbers, other scores."""
+    folder = tmp_path / "other"
+    bk.tune(asked.model_copy(update={"seed": 5}), folder, trials=2)
+    return (folder / "parts" / "trials.jsonl").read_bytes().splitlines(keepends=True)
+
+
+@pytest.mark.parametrize("line", [0, 1])
+def test_a_foreign_trial_is_tried_again_and_not_read(asked, whole, tmp_path, line):
+    folder = shutil.copytree(whole, tmp_path / "mixed")
+    path = folder / "parts" / "trials.jsonl"
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join([*lines[:line], foreign(asked, tmp_path)[line], *lines[line + 1 :]]))
+    done = bk.open_tuning(folder)
+    assert not done.finished
+    for read in (lambda: done.evaluations, lambda: done.summary, lambda: done.best):
+        with pytest.raises(bk.StudyError, match=r"trials\.jsonl: .*--resume"):
+            read()
+    said = []
+    bk.tune(asked, folder, resume=True, notice=said.append)
+    assert len(said) == 1 and said[0].startswith(f"trials.jsonl: line {line + 1} ")
+    assert contents(folder) == contents(whole)
+
+
+def test_an_edited_method_is_not_read(asked, whole, tmp_path):
+    folder = shutil.copytree(whole, tmp_path / "edited")
+    path = folder / "best.toml"
+    path.write_text(path.read_text() + "# mine\n")
+    done = bk.open_tuning(folder)
+    with pytest.raises(bk.StudyError, match=r"best\.toml: is not the one that was written"):
+        _ = done.best
+    bk.tune(asked, folder, resume=True)
+    assert contents(folder) == contents(whole)
 
 
 def test_without_resume_a_tuning_is_left_alone(asked, whole):

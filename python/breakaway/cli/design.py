@@ -110,6 +110,11 @@ def design(
     from breakaway.scenario import load_scenario
 
     asked = load_scenario(scenario)
+    if out is not None:  # before the work, not after it
+        from breakaway.output import claim
+        from breakaway.ownership import DESIGN
+
+        claim(out, DESIGN, [DESIGN.marker])
     with busy("judging the loops ..."):
         judged = [_judge(asked, one) for one in _gain_sets(asked)]
     stable = bool(judged) and all(one.stable for one in judged)
@@ -415,9 +420,10 @@ def _write(
     from json import dumps
 
     from breakaway.output import output_folder
+    from breakaway.ownership import DESIGN
     from breakaway.plots.style import save_figure
 
-    with output_folder(folder) as staging:
+    with output_folder(folder, DESIGN) as staging:
         text = dumps(plain(content), indent=2, allow_nan=False) + "\n"
         (staging / "design.json").write_text(text, encoding="utf-8", newline="\n")
         for one in judged:

@@ -21,6 +21,7 @@ from breakaway.scenario.method import Method
 from breakaway.scenario.population import Law, PartPopulation
 from breakaway.studies import StudyProgress
 from breakaway.studies.folder import prepared
+from breakaway.studies.pieces import Pieces
 from breakaway.studies.plan import Row
 from breakaway.threads import thread_count
 from breakaway.trials import Trial, run_trial
@@ -119,7 +120,8 @@ def compare_methods(
     progress : callable, optional
         Called about 20 times a second with a `StudyProgress`. What it raises ends the comparison.
     notice : callable, optional
-        Called with a sentence when a damaged file is computed again.
+        Called with a sentence when a file that is not the one that was written, be it damaged,
+        edited or of another comparison, is computed again.
 
     Returns
     -------
@@ -147,31 +149,34 @@ def compare_methods(
     asked = ask(population, methods, laws=laws, runs=runs, seed=seed, baselines=baselines)
     thread_count(threads)
     folder = None if out is None else Path(out)
-    with _held(folder, asked, resume=resume):
-        runner = _Runner(asked, folder, threads, progress, notice)
+    with _held(folder, asked, resume=resume) as pieces:
+        files = None if pieces is None else TrialFiles(asked, pieces)
+        runner = _Runner(asked, files, threads, progress, notice)
         try:
             done = _concluded(asked, runner.run(), folder)
-            if folder is not None and not (runner.all_found and ended(folder)):
-                runner.report(0, DRAWING)
-                write_end(asked, done.trials, done.table, done.result, done.notes, folder)
+            if pieces is not None:
+                if not (runner.all_found and ended(pieces)):
+                    runner.report(0, DRAWING)
+                    write_end(asked, done.trials, done.table, done.result, done.notes, pieces)
+                pieces.settle(pieces.names())
         except OutputError as error:
             raise OutputError(f"{error}; finished parts stay: resume it to go on") from None
     return done
 
 
 @contextmanager
-def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[None]:
-    """Check every method before anything runs, and hold the folder."""
+def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[Pieces | None]:
+    """Check every method before anything runs, hold the folder, and give its finished files."""
     for law in asked.laws:
         for method in asked.methods:
             _check(asked, method, law)
     if folder is None:
-        yield
+        yield None
         return
     if folder.exists() and not folder.is_dir():
         raise StudyError(f"out: {folder} is a file, not a folder; give a folder")
-    with prepared(folder, manifest_of(asked), resume=resume, called="comparison"):
-        yield
+    with prepared(folder, manifest_of(asked), resume=resume) as pieces:
+        yield pieces
 
 
 def _check(asked: Asked, method: Method, law: Law) -> None:
@@ -200,7 +205,7 @@ class _Runner:
     def __init__(
         self,
         asked: Asked,
-        folder: Path | None,
+        files: TrialFiles | None,
         threads: int | None,
         progress: Callable[[StudyProgress], None] | None,
         notice: Callable[[str], None] | None,
@@ -208,19 +213,17 @@ class _Runner:
         self.all_found = True
         self._asked, self._threads = asked, threads
         self._progress, self._notice = progress, notice
-        self._files = None if folder is None else TrialFiles(folder, asked)
+        self._files = files
         self._runs_done = self._runs_found = 0
 
     def run(self) -> Mapping[str, Mapping[str, Trial]]:
         """Give all trials, by law and name of the method."""
         found: dict[str, dict[str, list[Trial]]] = {}
-        count = 0
         for chunk in chunks_of(self._asked):
             trial = self._found(chunk) or self._computed(chunk)
             found.setdefault(chunk.law, {}).setdefault(chunk.method.name, []).append(trial)
-            count += 1
-        for path in self._files.remove_beyond(count) if self._files else ():
-            self._say(f"{path.name} does not belong to the comparison and was removed")
+        if self._files is not None:
+            self._files.remove_beyond(self._say)
         return MappingProxyType(
             {
                 law: MappingProxyType({name: _joined(t) for name, t in by_method.items()})
@@ -229,13 +232,8 @@ class _Runner:
         )
 
     def _found(self, chunk: Chunk) -> Trial | None:
-        """Read a chunk from its file, if that is there and sound."""
-        if self._files is None or not self._files.path(chunk).exists():
-            return None
-        flaw = self._files.flaw(chunk)
-        if flaw is not None:
-            name, runs = self._files.path(chunk).name, len(chunk.runs)
-            self._say(f"{name} {flaw}; its {runs} parts are computed again")
+        """Read a chunk from its file, if that is there as it was written."""
+        if self._files is None or not self._files.found(chunk, self._say):
             return None
         self._runs_done += len(chunk.runs)
         self._runs_found += len(chunk.runs)

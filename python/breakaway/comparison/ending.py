@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -15,11 +14,15 @@ from breakaway.comparison.asked import KIND, Asked
 from breakaway.comparison.courses import Courses, courses_of
 from breakaway.comparison.table import Trials
 from breakaway.comparison.trial_files import trial_schema
-from breakaway.output import output_folder, write_atomically
+from breakaway.output import output_folder
+from breakaway.ownership import STUDY
 from breakaway.plots.comparison import LAW_WORDS, Cloud, plot_course, plot_scatter, plot_shares
 from breakaway.plots.style import save_figure
 from breakaway.report.comparison import ShownFigure, comparison_page
-from breakaway.studies.folder import FORMAT, SUMMARY, as_csv, as_json, identity_of
+from breakaway.studies.folder import SUMMARY, as_csv, as_json
+from breakaway.studies.manifest import FORMAT, identity_of
+from breakaway.studies.part_files import PARTS
+from breakaway.studies.pieces import Pieces
 from breakaway.studies.plan import Row
 from breakaway.trials import TRIAL_METRICS
 
@@ -43,13 +46,10 @@ def manifest_of(asked: Asked) -> dict[str, Any]:
     return manifest | {"identity": identity_of(manifest)}
 
 
-def ended(folder: Path) -> bool:
-    """Whether a folder has everything that the end writes."""
-    try:
-        files = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))["files"]
-        return all((folder / name).is_file() for name in files)
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+def ended(pieces: Pieces) -> bool:
+    """Whether a folder has everything that the end writes, as it was written."""
+    names = [name for name in pieces.names() if not name.startswith(PARTS)]
+    return SUMMARY in names and all(pieces.flaw(name) is None for name in names)
 
 
 def write_end(
@@ -58,11 +58,11 @@ def write_end(
     table: Sequence[Row],
     result: Sequence[str],
     notes: Sequence[str],
-    folder: Path,
+    pieces: Pieces,
 ) -> None:
     """Write table, figures, page and the comparison itself, and last the summary."""
     courses = courses_of(trials)
-    with output_folder(folder) as staging:
+    with output_folder(pieces.folder, STUDY) as staging:
         (staging / TABLE).write_text(as_csv(table), encoding="utf-8", newline="")
         (staging / ASKED).write_text(asked.toml(), encoding="utf-8", newline="\n")
         figures = _draw(asked, trials, table, courses, staging)
@@ -82,7 +82,7 @@ def write_end(
             },
         )
         (staging / PAGE).write_text(page, encoding="utf-8", newline="\n")
-        files = sorted(path.name for path in staging.iterdir())
+        files = pieces.note_staged(staging)
     summary = {
         "kind": KIND,
         "population": asked.population.name,
@@ -96,7 +96,7 @@ def write_end(
         "table": list(table),
         "files": files,
     }
-    write_atomically(folder / SUMMARY, as_json(summary))
+    pieces.write(SUMMARY, as_json(summary))
 
 
 def _draw(

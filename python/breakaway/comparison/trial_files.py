@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,12 +12,11 @@ from numpy.typing import NDArray
 
 from breakaway.batch.batch import unit_of
 from breakaway.comparison.asked import Asked
-from breakaway.output import write_atomically
 from breakaway.scenario.method import Method
 from breakaway.scenario.population import QUANTITIES, Law
-from breakaway.studies.part_files import as_bytes, flaw_of
-from breakaway.studies.parts import PARTS
-from breakaway.trials import TRIAL_METRICS, Trial, draw_parts
+from breakaway.studies.part_files import as_bytes, found, part_name, remove_beyond
+from breakaway.studies.pieces import Pieces
+from breakaway.trials import TRIAL_METRICS, Trial
 
 
 @dataclass(frozen=True)
@@ -61,14 +59,9 @@ def trial_schema() -> Any:  # noqa: ANN401 - pyarrow has no type stubs
 class TrialFiles:
     """The files of a comparison's chunks."""
 
-    def __init__(self, folder: Path, asked: Asked) -> None:
-        self._folder = folder / PARTS
-        self._asked = asked
+    def __init__(self, asked: Asked, pieces: Pieces) -> None:
+        self._asked, self._pieces = asked, pieces
         self._schema = trial_schema()
-
-    def path(self, chunk: Chunk) -> Path:
-        """Give the file of a chunk."""
-        return self._folder / f"part-{chunk.number:06d}.parquet"
 
     def write(self, chunk: Chunk, trial: Trial) -> None:
         """Write a chunk, whole or not at all.
@@ -90,28 +83,17 @@ class TrialFiles:
         columns += [trial.metrics[name] for name in TRIAL_METRICS]
         arrays = [*texts, *(arrow.array(column) for column in columns)]
         table = arrow.Table.from_arrays(arrays, schema=self._schema)
-        write_atomically(self.path(chunk), as_bytes(table))
+        self._pieces.write(part_name(chunk.number), as_bytes(table))
 
-    def flaw(self, chunk: Chunk) -> str | None:
-        """Say what is wrong with the file of a chunk, None where nothing is."""
-        return flaw_of(self.path(chunk), self._schema, lambda table: self._holds(table, chunk))
-
-    def _holds(self, table: Any, chunk: Chunk) -> bool:  # noqa: ANN401 - pyarrow has no type stubs
-        """Whether a table is about these parts, as the seed draws them."""
-        named = {
-            name: set(table[name].unique().to_pylist()) == {value}
-            for name, value in (("law", chunk.law), ("method", chunk.method.name))
-        }
-        drawn = draw_parts(self._asked.population, chunk.runs, seed=self._asked.seed)
-        return all(named.values()) and all(
-            np.array_equal(table[name].to_numpy(), values)
-            for name, values in {"run_index": np.asarray(chunk.runs), **drawn}.items()
-        )
+    def found(self, chunk: Chunk, say: Callable[[str], None]) -> bool:
+        """Whether the file of a chunk is there as it was written; of another one, say so."""
+        return found(self._pieces, chunk.number, f"{len(chunk.runs)} parts", say)
 
     def read(self, chunk: Chunk) -> Trial:
         """Read a chunk as the trial it was written from."""
         parquet: Any = import_module("pyarrow.parquet")
-        table = parquet.read_table(self.path(chunk), use_threads=False, partitioning=None)
+        path = self._pieces.folder / part_name(chunk.number)
+        table = parquet.read_table(path, use_threads=False, partitioning=None)
         columns = {name: table[name].to_numpy() for name in (*QUANTITIES, *TRIAL_METRICS)}
         return Trial(
             population=self._asked.population,
@@ -123,10 +105,14 @@ class TrialFiles:
             metrics={name: columns[name] for name in TRIAL_METRICS},
         )
 
-    def remove_beyond(self, count: int) -> list[Path]:
-        """Remove files that belong to no chunk, and give their paths."""
-        known = {f"part-{number:06d}.parquet" for number in range(count)}
-        beyond = [p for p in sorted(self._folder.glob("part-*.parquet")) if p.name not in known]
-        for path in beyond:
-            path.unlink()
-        return beyond
+    def remove_beyond(self, say: Callable[[str], None]) -> None:
+        """Remove files that belong to no chunk, and say so.
+
+        Raises
+        ------
+        OutputError
+            One can not be removed.
+
+        """
+        count = sum(1 for _ in chunks_of(self._asked))
+        remove_beyond(self._pieces, count, "comparison", say)

@@ -18,6 +18,7 @@ from breakaway.export.recording import Recording, record
 from breakaway.export.templating import fill
 from breakaway.export.vectors import COLUMNS, STEPS, bits, likely_inputs, reference
 from breakaway.output import output_folder
+from breakaway.ownership import C_SOURCES
 from breakaway.resolution import resolve
 from breakaway.scenario.scenario import Scenario
 
@@ -61,7 +62,7 @@ def export_c(
     what : {"controller", "plant", "loop"}
         Reference, controller and watch; or actuator, joint, part and sensors; or both.
     out : path
-        Folder for the files, made if it is missing. Files of the same names are replaced.
+        Folder for the files, made if it is missing. Those of an earlier export are replaced.
     real : {"double", "float"}
         The real type.
 
@@ -75,7 +76,8 @@ def export_c(
         It is no scenario, `what` or `real` is not known, the controller can not be designed for
         this joint, or a number is out of its range as float.
     OutputError
-        The folder can not be written.
+        The folder can not be written, holds a result of another kind, or files of others under
+        these names.
 
     Examples
     --------
@@ -92,7 +94,7 @@ def export_c(
     recording = record(resolve(scenario), what, real)
     folder = Path(out)
     texts = c_texts(recording)
-    with output_folder(folder) as staging:
+    with output_folder(folder, C_SOURCES, texts) as staging:
         for name, text in texts.items():
             (staging / name).write_text(text, encoding="utf-8", newline="\n")
     return ExportedC(what, real, tuple(folder / name for name in sorted(texts)))

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from breakaway._core import __version__
-from breakaway.output import output_folder
+from breakaway.output import claim, output_folder
+from breakaway.ownership import REPRODUCTION, refuse_links
 from breakaway.plots.style import save_figure
 from breakaway.report.page import render
 from breakaway.reproduction.figures import ReproducedFigure, draw_all
@@ -21,7 +22,7 @@ from breakaway.reproduction.findings import (
 )
 from breakaway.reproduction.rows import Row
 from breakaway.reproduction.runs import Runs, simulate_all
-from breakaway.reproduction.survey import CONFIDENCE, NAMES, DisturbanceRange, FullSurvey
+from breakaway.reproduction.survey import CONFIDENCE, CONTROLS, NAMES, DisturbanceRange, FullSurvey
 from breakaway.reproduction.tables import table_1, table_2
 
 VERDICT = {True: "agrees", False: "differs", None: "not in the paper"}
@@ -65,16 +66,20 @@ def reproduce(
     StudyError
         The folder holds figure 10 with other settings or of another version.
     OutputError
-        The folder can not be written.
+        The folder can not be written, holds a result of another kind, files of others under these
+        names, or a symbolic link in place of a folder of figure 10.
 
     """
     rows = [*table_1(), *table_2()]
     from_table_1 = table_2("paper_as_printed", key="table2_from_table1")
     ranges = None
+    names = ("report.html", REPRODUCTION.marker)
+    claim(out, REPRODUCTION, names)
     if full is not None:
         progress(f"figure 10: {len(full.levels)} levels x {full.seeds:,} runs of each control")
+        refuse_links(out / "figure_10", *(out / "figure_10" / control for control in CONTROLS))
         ranges = full.run(out / "figure_10")
-    with output_folder(out) as staging:
+    with output_folder(out, REPRODUCTION, names) as staging:
         runs = simulate_all(progress, ranges)
         findings = [*misprints(), table_1_and_table_2(from_table_1), *simulated(runs)]
         progress("figures and report")

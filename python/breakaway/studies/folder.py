@@ -1,154 +1,97 @@
-"""The folder of a study: its manifest, and whether it can go on."""
+"""The folder of a study: whether it is its own, and whether it can go on."""
 
 from __future__ import annotations
 
 import csv
-import hashlib
 import json
-import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
-from importlib.metadata import version
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from breakaway._core import __version__
 from breakaway.errors import OutputError, StudyError
-from breakaway.output import write_atomically
-from breakaway.resolution import resolve
-from breakaway.studies.parts import PARTS, label_types, part_schema
-from breakaway.studies.plan import Plan
-from breakaway.studies.study import Study
+from breakaway.output import (
+    STAGING_FILE,
+    STAGING_FOLDER,
+    not_written,
+    open_inside,
+    remove_leftovers,
+    write_inside,
+)
+from breakaway.ownership import refuse_links
+from breakaway.reading import read_json
+from breakaway.studies.manifest import MANIFEST, deciding, kind_of, read_manifest
+from breakaway.studies.part_files import PARTS, parts_in
+from breakaway.studies.pieces import Pieces
 from breakaway.text import csv_cell
 
-MANIFEST, SUMMARY, LOCK = "manifest.json", "summary.json", ".lock"
-FORMAT = 1
-"""Number of the folder's layout."""
-DESCRIBING = ("name", "description")
-"""Keys of a study that its results do not depend on."""
-
-
-def manifest_of(study: Study, plan: Plan) -> dict[str, Any]:
-    """Give what determines the results of a study, and what they look like.
-
-    Examples
-    --------
-    >>> import breakaway as bk
-    >>> from breakaway.studies.study import SweepStudy
-    >>> from breakaway.studies.sweep import SweepPlan
-    >>> study = SweepStudy(
-    ...     scenario="paper_as_computed", changes={"disturbance.var": 0.1}, runs=10
-    ... )
-    >>> manifest_of(study, SweepPlan(study))["seed"]
-    0
-
-    """
-    labels = label_types(plan.points)
-    schema = part_schema(labels, plan.varied, study.recorded)
-    manifest = {
-        "format": FORMAT,
-        "breakaway_version": __version__,
-        "libraries": _libraries(study),
-        "study": study.model_dump(mode="json"),
-        "scenario": resolve(study.base).model_dump(mode="json"),
-        "seed": study.base.seed,
-        "runs_max": plan.runs_max,
-        "runs_per_part": study.runs_per_part,
-        "labels": labels,
-        "varied": plan.varied,
-        "metrics": list(study.recorded),
-        "columns": [
-            {"name": f.name, "type": str(f.type), "unit": f.metadata[b"unit"].decode()}
-            for f in schema
-        ],
-    }
-    return manifest | {"identity": identity_of(manifest)}
-
-
-def _libraries(study: Study) -> dict[str, str]:
-    """Give the versions of what draws are computed with."""
-    names = ["numpy", "scipy", *(["SALib"] if study.kind == "sensitivity" else [])]
-    return {name: version(name) for name in names}
-
-
-def identity_of(manifest: Mapping[str, Any]) -> str:
-    """Give a digest of all in a manifest that results depend on."""
-    text = json.dumps(_deciding(manifest))  # in the order of the keys, on which draws depend
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def _deciding(manifest: Mapping[str, Any]) -> dict[str, Any]:
-    study = {k: v for k, v in manifest["study"].items() if k not in DESCRIBING}
-    return {**{k: v for k, v in manifest.items() if k != "identity"}, "study": study}
-
-
-def read_manifest(folder: Path) -> dict[str, Any]:
-    """Read the manifest of a study.
-
-    Raises
-    ------
-    StudyError
-        There is none, or it can not be read.
-
-    """
-    path = folder / MANIFEST
-    try:
-        manifest: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        found = manifest["format"], manifest["identity"], manifest["study"]["kind"]
-    except (FileNotFoundError, NotADirectoryError):
-        raise StudyError(
-            f"{folder}: holds no study ({MANIFEST} is missing); give the --out of a study"
-        ) from None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise StudyError(f"{path}: can not be read as a manifest: {error!r}") from None
-    if found[0] != FORMAT:
-        raise StudyError(
-            f"{path}: has the format {found[0]!r}, not {FORMAT}; open it with breakaway "
-            f"{manifest.get('breakaway_version')}"
-        )
-    return manifest
+SUMMARY, LOCK = "summary.json", ".lock"
+MOST_SUMMARY_BYTES = 2**30
+"""Most bytes of a summary; nothing is read that has no digest."""
 
 
 @contextmanager
-def prepared(
-    folder: Path, manifest: Mapping[str, Any], *, resume: bool, called: str = "study"
-) -> Iterator[None]:
-    """Hold a folder for a study: a new one, or the same one to go on with.
+def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iterator[Pieces]:
+    """Hold a folder for a study, tuning or comparison: a new one, or the same one to go on with.
 
-    What it is ``called`` stands in errors.
+    The folder itself may be a symbolic link, and nothing in it. Give its finished files.
 
     Raises
     ------
     StudyError
-        The folder holds a study and is not to be resumed, another study, or one that another
-        process is running.
+        The folder holds the same and is not to be resumed, another one, files of others, a
+        symbolic link, or what another process is running.
     OutputError
         The folder can not be written.
 
     """
+    called = kind_of(manifest)
     existed = folder.exists()
-    found = (folder / MANIFEST).exists()
-    if found:
-        _refuse_other(folder, read_manifest(folder), manifest, resume=resume, called=called)
-    elif (folder / PARTS).exists() and any((folder / PARTS).iterdir()):
-        raise StudyError(
-            f"{folder}: holds parts of a {called} but no {MANIFEST}; give another folder"
-        )
     try:
+        _refuse_links_in(folder)
+        found = (folder / MANIFEST).exists()
+        if found:
+            _refuse_other(folder, read_manifest(folder), manifest, resume=resume)
+        else:
+            _refuse_filled(folder, called)
         (folder / PARTS).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise not_written(folder, error) from None
     with _locked(folder, called):
-        _remove_leftovers(folder)
+        remove_leftovers(folder)
+        remove_leftovers(folder / PARTS)
         if not found:
             try:
-                write_atomically(folder / MANIFEST, as_json(manifest))
+                write_inside(folder / MANIFEST, as_json(manifest))
             except OutputError:
                 _remove_made(folder, existed=existed)
                 raise
-        yield
+        pieces = Pieces(folder, manifest["identity"])
+        pieces.settle(pieces.names())
+        yield pieces
+
+
+def _refuse_links_in(folder: Path) -> None:
+    for inside in (folder, folder / PARTS):
+        if inside.is_dir():
+            try:
+                refuse_links(*sorted(inside.iterdir()))
+            except OutputError as error:  # nothing can be gone on with
+                raise StudyError(str(error)) from None
+
+
+def _refuse_filled(folder: Path, called: str) -> None:
+    """Refuse a folder in which something is, but for what a start leaves that was killed."""
+    for inside in (folder, folder / PARTS):
+        for path in sorted(inside.iterdir()) if inside.is_dir() else ():
+            ours = STAGING_FILE.fullmatch(path.name) or STAGING_FOLDER.fullmatch(path.name)
+            if not ours and path not in (folder / LOCK, folder / PARTS):
+                raise StudyError(
+                    f"{folder}: holds {path.relative_to(folder)} but no {MANIFEST}; a {called} "
+                    "begins in a new or empty folder: give one"
+                )
 
 
 def _refuse_other(
@@ -157,10 +100,14 @@ def _refuse_other(
     manifest: Mapping[str, Any],
     *,
     resume: bool,
-    called: str,
 ) -> None:
+    called = kind_of(manifest)
+    if kind_of(found) != called:
+        raise StudyError(
+            f"{folder}: holds a {kind_of(found)}, and this is a {called}; give another folder"
+        )
     if found["identity"] != manifest["identity"]:
-        differences = list(_differences(_deciding(found), _deciding(manifest), ""))
+        differences = list(_differences(deciding(found), deciding(manifest), ""))
         said = "; ".join(differences[:3]) or "the order of its keys"
         more = f"; and {len(differences) - 3} more" if len(differences) > 3 else ""
         raise StudyError(
@@ -196,11 +143,11 @@ def _locked(folder: Path, called: str) -> Iterator[None]:
         yield
         return
     path = folder / LOCK
-    try:
-        file = path.open("ab")
-    except OSError as error:
-        raise not_written(folder, error) from None
-    with file:
+    with ExitStack() as opened:
+        try:
+            file = opened.enter_context(open_inside(path))
+        except OSError as error:
+            raise not_written(path, error) from None
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -212,24 +159,42 @@ def _locked(folder: Path, called: str) -> Iterator[None]:
         yield
 
 
-def _remove_leftovers(folder: Path) -> None:
-    """Remove what a killed process was writing."""
-    import shutil
-
-    for pattern in (f"{PARTS}/.part-*", ".manifest.json.*", ".summary.json.*"):
-        for path in folder.glob(pattern):
-            with suppress(OSError):
-                path.unlink()
-    for path in folder.glob(".writing.*"):
-        shutil.rmtree(path, ignore_errors=True)
-
-
 def _remove_made(folder: Path, *, existed: bool) -> None:
     with suppress(OSError):
         (folder / LOCK).unlink()
         (folder / PARTS).rmdir()
         if not existed:
             folder.rmdir()
+
+
+def finished_names(pieces: Pieces) -> list[str]:
+    """Give the names of the summary and of all parts, where no part is to come any more."""
+    there = parts_in(pieces.folder)  # before the digests, which come first
+    pieces.reread()
+    return [*sorted({*there, *pieces.names(PARTS)}), SUMMARY]
+
+
+def is_finished(pieces: Pieces) -> bool:
+    """Whether there is a summary, and it and all parts are as they were written."""
+    return all(pieces.flaw(name) is None for name in finished_names(pieces))
+
+
+def read_summary(pieces: Pieces) -> dict[str, Any]:
+    """Read the summary of a finished folder.
+
+    Raises
+    ------
+    StudyError
+        The summary, or a part of what it sums up, is missing or not as it was written.
+
+    """
+    for name in finished_names(pieces):
+        pieces.refuse_flawed(name)
+    path = pieces.folder / SUMMARY
+    summary = read_json(path, MOST_SUMMARY_BYTES)
+    if not isinstance(summary, dict):
+        raise StudyError(f"{path}: is no table; go on with --resume to have it again")
+    return summary
 
 
 def as_json(content: object) -> bytes:
@@ -245,11 +210,3 @@ def as_csv(rows: Sequence[Mapping[str, Any]]) -> str:
     writer.writerow(map(csv_cell, names))
     writer.writerows([csv_cell(row.get(name)) for name in names] for row in rows)
     return text.getvalue()
-
-
-def not_written(path: Path, error: OSError) -> OutputError:
-    """Say that a place can not be written, and why."""
-    reason = os.strerror(error.errno) if error.errno else str(error)
-    if isinstance(error, FileExistsError):
-        reason = "is a file, not a folder"
-    return OutputError(f"{path}: can not be written: {reason}; give a folder that you can write to")

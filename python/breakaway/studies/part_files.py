@@ -1,11 +1,31 @@
-"""Files of columns that outlive a kill: the same columns give the same bytes; flaws are found."""
+"""Files of columns, numbered in the order in which they are computed."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
+
+from breakaway.studies.pieces import MISSING, Pieces
+
+PARTS = "parts"
+"""Folder of the parts within that of a study."""
+PART = re.compile(r"part-\d{6,}\.parquet")
+"""Names of parts in it."""
+
+
+def part_name(number: int) -> str:
+    """Give the place of a part in the folder of its study."""
+    return f"{PARTS}/part-{number:06d}.parquet"
+
+
+def parts_in(folder: Path) -> list[str]:
+    """Give the places of all files in a study's folder that are named as parts."""
+    inside = folder / PARTS
+    names = [path.name for path in inside.iterdir()] if inside.is_dir() else []
+    return [f"{PARTS}/{name}" for name in sorted(names) if PART.fullmatch(name)]
 
 
 def as_bytes(table: Any) -> bytes:  # noqa: ANN401 - pyarrow has no type stubs
@@ -17,34 +37,26 @@ def as_bytes(table: Any) -> bytes:  # noqa: ANN401 - pyarrow has no type stubs
     return content
 
 
-def flaw_of(path: Path, schema: Any, holds_its_runs: Callable[[Any], bool]) -> str | None:  # noqa: ANN401
-    """Say what is wrong with a file of columns, None where nothing is.
+def found(pieces: Pieces, number: int, lost: str, say: Callable[[str], None]) -> bool:
+    """Whether a part is there as it was written; of another one, say what is computed again."""
+    name = part_name(number)
+    flaw = pieces.flaw(name)
+    if flaw not in (None, MISSING):
+        say(f"{Path(name).name} {flaw}; its {lost} are computed again")
+    return flaw is None
 
-    Every page is read against its checksum. What no checksum covers is compared with what
-    the same columns would be written as, where the same version of pyarrow wrote it.
+
+def remove_beyond(pieces: Pieces, count: int, called: str, say: Callable[[str], None]) -> None:
+    """Remove the parts whose number is not below ``count``, and say so.
+
+    Raises
+    ------
+    OutputError
+        One can not be removed.
+
     """
-    parquet: Any = import_module("pyarrow.parquet")
-    try:
-        content = path.read_bytes()
-        source = import_module("pyarrow").BufferReader(content)
-        reader = parquet.ParquetFile(source, page_checksum_verification=True)
-        table = reader.read(use_threads=False)
-    except Exception as error:  # a damaged file may make anything of its reader
-        return f"can not be read ({_first_line(error)})"
-    if not table.schema.equals(schema):
-        return "has other columns"
-    if not holds_its_runs(table):
-        return "has other runs"
-    ours = as_bytes(table)
-    if _writer_of(content) == _writer_of(ours) and content != ours:
-        return "is damaged"
-    return None
-
-
-def _writer_of(content: bytes) -> str:
-    source = import_module("pyarrow").BufferReader(content)
-    return str(import_module("pyarrow.parquet").read_metadata(source).created_by)
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).strip().split("\n")[0].rstrip(".")
+    kept = {part_name(number) for number in range(count)}
+    for name in parts_in(pieces.folder):
+        if name not in kept:
+            pieces.remove(name)
+            say(f"{Path(name).name} does not belong to the {called} and was removed")

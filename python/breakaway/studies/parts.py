@@ -1,11 +1,10 @@
-"""The parts of a study in a folder: written whole, read back, and checked."""
+"""The parts of a study in a folder: written whole, and read back."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,13 +12,11 @@ from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
 from breakaway.batch.batch import Batch, unit_of
-from breakaway.output import write_atomically
 from breakaway.studies.levels import Level
-from breakaway.studies.part_files import as_bytes, flaw_of
+from breakaway.studies.part_files import as_bytes, part_name
+from breakaway.studies.pieces import Pieces
 from breakaway.studies.points import Point
 
-PARTS = "parts"
-"""Folder of the parts within that of a study."""
 LARGE = 1000
 """Fewest runs of a piece whose columns are read one by one."""
 
@@ -62,23 +59,15 @@ class Parts:
     """The columns of a study's parts, and the files they are in."""
 
     def __init__(
-        self, folder: Path, labels: Mapping[str, str], varied: Sequence[str], metrics: Sequence[str]
+        self,
+        pieces: Pieces,
+        labels: Mapping[str, str],
+        varied: Sequence[str],
+        metrics: Sequence[str],
     ) -> None:
-        self.folder = folder / PARTS
+        self._pieces = pieces
         self._schema = part_schema(labels, varied, metrics)
         self._kept: tuple[int, Any] = (-1, None)
-
-    def path(self, number: int) -> Path:
-        """Give the file of a part."""
-        return self.folder / f"part-{number:06d}.parquet"
-
-    def remove_beyond(self, count: int) -> list[Path]:
-        """Remove the parts whose number is not below ``count``, and give their files."""
-        kept = {self.path(number) for number in range(count)}
-        beyond = [path for path in sorted(self.folder.glob("part-*.parquet")) if path not in kept]
-        for path in beyond:
-            path.unlink()
-        return beyond
 
     def write(self, number: int, pieces: Sequence[tuple[Piece, Point, Batch]]) -> None:
         """Write a part, whole or not at all.
@@ -91,7 +80,7 @@ class Parts:
         """
         arrow: Any = import_module("pyarrow")
         tables = [self._table(piece, point, batch) for piece, point, batch in pieces]
-        write_atomically(self.path(number), as_bytes(arrow.concat_tables(tables)))
+        self._pieces.write(part_name(number), as_bytes(arrow.concat_tables(tables)))
 
     def _table(self, piece: Piece, point: Point, batch: Batch) -> Any:  # noqa: ANN401 - no stubs
         arrow: Any = import_module("pyarrow")
@@ -109,12 +98,6 @@ class Parts:
         arrays.append(arrow.DictionaryArray.from_arrays(codes, list(OUTCOMES)))
         return arrow.Table.from_arrays(arrays, schema=self._schema)
 
-    def flaw(self, number: int, pieces: Sequence[Piece], points: Sequence[Point]) -> str | None:
-        """Say what is wrong with the file of a part, None where nothing is."""
-        return flaw_of(
-            self.path(number), self._schema, lambda table: _has_runs(table, pieces, points)
-        )
-
     def column(self, name: str, number: int, piece: Piece) -> NDArray[Any]:
         """Read a column of a piece; outcomes as their places among the outcomes."""
         values = self._read(number, name, piece).slice(piece.offset, len(piece.rows))
@@ -127,26 +110,17 @@ class Parts:
     def _read(self, number: int, name: str, piece: Piece) -> Any:  # noqa: ANN401 - no stubs
         """Read a column of a part; of small points, which share it, the part is kept as a whole."""
         parquet: Any = import_module("pyarrow.parquet")
+        path = self._pieces.folder / part_name(number)
         if len(piece.rows) >= LARGE:
-            return parquet.read_table(
-                self.path(number), columns=[name], use_threads=False, partitioning=None
-            )[name]
+            return parquet.read_table(path, columns=[name], use_threads=False, partitioning=None)[
+                name
+            ]
         if self._kept[0] != number:
             self._kept = (
                 number,
-                parquet.read_table(self.path(number), use_threads=False, partitioning=None),
+                parquet.read_table(path, use_threads=False, partitioning=None),
             )
         return self._kept[1][name]
-
-
-def _has_runs(table: Any, pieces: Sequence[Piece], points: Sequence[Point]) -> bool:  # noqa: ANN401
-    runs = [
-        p.runs[piece.rows.start : piece.rows.stop] for p, piece in zip(points, pieces, strict=True)
-    ]
-    numbers = [np.full(len(piece.rows), piece.point) for piece in pieces]
-    return np.array_equal(table["run_index"].to_numpy(), np.concatenate(runs)) and np.array_equal(
-        table["point"].to_numpy(), np.concatenate(numbers)
-    )
 
 
 def part_schema(labels: Mapping[str, str], varied: Sequence[str], metrics: Sequence[str]) -> Any:  # noqa: ANN401 - pyarrow has no type stubs

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from importlib import import_module
@@ -16,8 +15,11 @@ from breakaway.batch.batch import as_pandas
 from breakaway.batch.columns import at_run, with_nominal_controller
 from breakaway.errors import StudyError
 from breakaway.run import Run
-from breakaway.studies.folder import SUMMARY, read_manifest
-from breakaway.studies.parts import PARTS, part_schema
+from breakaway.studies.folder import SUMMARY, finished_names, is_finished, read_summary
+from breakaway.studies.manifest import MANIFEST, kind_of, read_manifest
+from breakaway.studies.part_files import part_name, parts_in
+from breakaway.studies.parts import part_schema
+from breakaway.studies.pieces import Pieces
 from breakaway.studies.study import Study
 
 
@@ -29,6 +31,13 @@ class StudyResult:
         """Where it is."""
         self.manifest: Mapping[str, Any] = read_manifest(folder)
         """What determines it: the study, its scenario, seed, versions, columns."""
+        kind = kind_of(self.manifest)
+        if kind != "study":
+            raise StudyError(
+                f"{folder / MANIFEST}: is of a {kind}, not of a study"
+                + ("; open it with open_tuning" if kind == "tuning" else "")
+            )
+        self._pieces = Pieces(folder, self.manifest["identity"])
 
     def __repr__(self) -> str:
         state = "finished" if self.finished else f"not finished, {len(self.part_files)} parts"
@@ -37,13 +46,13 @@ class StudyResult:
 
     @property
     def finished(self) -> bool:
-        """Whether the study came to its end."""
-        return (self.folder / SUMMARY).is_file()
+        """Whether the study came to its end, and all parts and the summary are as it wrote them."""
+        return is_finished(self._pieces)
 
     @property
     def part_files(self) -> list[Path]:
         """Files of the finished parts, in their order."""
-        return sorted((self.folder / PARTS).glob("part-*.parquet"))
+        return [self.folder / name for name in parts_in(self.folder)]
 
     @cached_property
     def study(self) -> Study:
@@ -59,25 +68,41 @@ class StudyResult:
         Raises
         ------
         StudyError
-            The study is not finished.
+            The study is not finished, or a part or the summary is not as it wrote it.
 
         """
-        if not self.finished:
+        if not (self.folder / SUMMARY).is_file():
             raise StudyError(
                 f"{self.folder}: is not finished, {len(self.part_files)} parts are; "
                 "go on with --resume"
             )
-        summary: dict[str, Any] = json.loads((self.folder / SUMMARY).read_text(encoding="utf-8"))
-        return summary
+        return read_summary(self._pieces)
 
     @property
     def dataset(self) -> Any:  # noqa: ANN401 - pyarrow has no type stubs
-        """The runs of the finished parts as a dataset of pyarrow, of which nothing is read yet."""
+        """The runs of the finished parts as a dataset of pyarrow, of which nothing is read yet.
+
+        Raises
+        ------
+        StudyError
+            A part is missing, or not as the study wrote it.
+
+        """
+        self._refuse_flawed_parts()
         manifest = self.manifest
         schema = part_schema(manifest["labels"], manifest["varied"], manifest["metrics"])
         return import_module("pyarrow.dataset").dataset(
             [str(path) for path in self.part_files], schema=schema, format="parquet"
         )
+
+    def _refuse_flawed_parts(self) -> None:
+        if (self.folder / SUMMARY).exists():
+            names = finished_names(self._pieces)
+        else:
+            names = [part_name(number) for number in range(len(self.part_files))]
+            self._pieces.reread()
+        for name in names:
+            self._pieces.refuse_flawed(name)
 
     def scan(self, columns: Sequence[str] | None = None, filter: Any = None) -> Any:  # noqa: ANN401
         """Read some columns of the runs that pass a filter, as a table of pyarrow.
@@ -92,7 +117,7 @@ class StudyResult:
         Raises
         ------
         StudyError
-            There is no such column.
+            There is no such column, or a part is missing or not as the study wrote it.
 
         """
         known = [column["name"] for column in self.manifest["columns"]]

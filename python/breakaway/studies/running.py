@@ -11,12 +11,16 @@ import tomli_w
 
 from breakaway._core import __version__
 from breakaway.errors import OutputError, StudyError
-from breakaway.output import output_folder, write_atomically
+from breakaway.output import output_folder
+from breakaway.ownership import STUDY
 from breakaway.studies.agreement import AgreementPlan
 from breakaway.studies.agreement_study import AgreementStudy
 from breakaway.studies.compare import ComparePlan
-from breakaway.studies.folder import SUMMARY, as_csv, as_json, manifest_of, prepared
+from breakaway.studies.folder import SUMMARY, as_csv, as_json, prepared
+from breakaway.studies.manifest import manifest_of
+from breakaway.studies.part_files import found, part_name, remove_beyond
 from breakaway.studies.parts import Parts, Piece, label_types, laid_out
+from breakaway.studies.pieces import Pieces
 from breakaway.studies.plan import Plan, PointRuns, Summary
 from breakaway.studies.points import Point
 from breakaway.studies.result import StudyResult, open_study
@@ -76,7 +80,8 @@ def run_study(
     progress : callable, optional
         Called about 20 times a second with a `StudyProgress`.
     notice : callable, optional
-        Called with a sentence when a damaged part is computed again.
+        Called with a sentence when a part that is not the one that was written, be it damaged,
+        edited or of another study, is computed again.
 
     Returns
     -------
@@ -110,13 +115,13 @@ def run_study(
     for point in plan.points:
         point.check()
     folder = Path(out)
-    with prepared(folder, manifest_of(study, plan), resume=resume):
-        parts = Parts(folder, label_types(plan.points), plan.varied, study.recorded)
-        runner = _Runner(study, plan, parts, threads, progress, notice)
+    with prepared(folder, manifest_of(study, plan), resume=resume) as pieces:
+        runner = _Runner(study, plan, pieces, threads, progress, notice)
         try:
             summary = plan.conduct(runner.run)
-            runner.remove_beyond()
-            _write_end(study, plan, summary, runner.runs_done, folder)
+            names = runner.parts_alone()
+            names += _write_end(study, plan, summary, runner.runs_done, pieces)
+            pieces.settle(names)
         except OutputError as error:
             raise OutputError(f"{error}; finished parts stay: resume it to go on") from None
     return open_study(folder)
@@ -152,13 +157,15 @@ class _Runner:
         self,
         study: Study,
         plan: Plan,
-        parts: Parts,
+        pieces: Pieces,
         threads: int | None,
         progress: Callable[[StudyProgress], None] | None,
         notice: Callable[[str], None] | None,
     ) -> None:
         self.runs_done = 0
-        self._study, self._plan, self._parts, self._threads = study, plan, parts, threads
+        self._study, self._plan, self._threads = study, plan, threads
+        self._pieces = pieces
+        self._parts = Parts(pieces, label_types(plan.points), plan.varied, study.recorded)
         self._progress, self._notice = progress, notice
         self._runs_found = 0
         self._next_part = 0
@@ -170,31 +177,28 @@ class _Runner:
         self._doing = doing
         first = self._next_point
         self._next_point += len(points)
-        pieces: list[list[tuple[int, Piece]]] = [[] for _ in points]
+        shares: list[list[tuple[int, Piece]]] = [[] for _ in points]
         for layout in laid_out(points, first, self._study.runs_per_part):
             self._finish(layout, [points[piece.point - first] for piece in layout])
             for piece in layout:
-                pieces[piece.point - first].append((self._next_part, piece))
+                shares[piece.point - first].append((self._next_part, piece))
             self._next_part += 1
-        return [PointRuns(p, found, self._parts) for p, found in zip(points, pieces, strict=True)]
+        return [PointRuns(p, share, self._parts) for p, share in zip(points, shares, strict=True)]
 
-    def remove_beyond(self) -> None:
-        """Remove parts that do not belong to the study, which only a damaged one can have left."""
-        for path in self._parts.remove_beyond(self._next_part):
-            self._say(f"{path.name} does not belong to the study and was removed")
+    def parts_alone(self) -> list[str]:
+        """Remove parts that do not belong to the study, and give the names of those that do."""
+        remove_beyond(self._pieces, self._next_part, "study", self._say)
+        return [part_name(number) for number in range(self._next_part)]
 
     def _finish(self, layout: Sequence[Piece], points: Sequence[Point]) -> None:
         """See that a part is on disk."""
         runs = sum(len(piece.rows) for piece in layout)
         number = self._next_part
-        if self._parts.path(number).exists():
-            flaw = self._parts.flaw(number, layout, points)
-            if flaw is None:
-                self._runs_found += runs
-                self.runs_done += runs
-                self._report(0)
-                return
-            self._say(f"{self._parts.path(number).name} {flaw}; its {runs} runs are computed again")
+        if found(self._pieces, number, f"{runs} runs", self._say):
+            self._runs_found += runs
+            self.runs_done += runs
+            self._report(0)
+            return
         self._compute(number, layout, points)
 
     def _compute(self, number: int, layout: Sequence[Piece], points: Sequence[Point]) -> None:
@@ -232,8 +236,11 @@ class _Runner:
             self._notice(sentence)
 
 
-def _write_end(study: Study, plan: Plan, summary: Summary, runs: int, folder: Path) -> None:
-    """Write tables, figures, the study itself, and last the summary, which says that it is done."""
+def _write_end(study: Study, plan: Plan, summary: Summary, runs: int, pieces: Pieces) -> list[str]:
+    """Write tables, figures, the study itself, and last the summary, which says that it is done.
+
+    Give the names of the files.
+    """
     content = {
         "kind": study.kind,
         "name": study.name,
@@ -246,7 +253,7 @@ def _write_end(study: Study, plan: Plan, summary: Summary, runs: int, folder: Pa
         **summary.facts,
         "tables": summary.tables,
     }
-    with output_folder(folder) as staging:
+    with output_folder(pieces.folder, STUDY) as staging:
         for name, rows in summary.tables.items():
             (staging / f"{name}.csv").write_text(as_csv(rows), encoding="utf-8", newline="")
         how = "# The whole study, its scenario within. Runs again: breakaway study study.toml\n\n"
@@ -254,7 +261,9 @@ def _write_end(study: Study, plan: Plan, summary: Summary, runs: int, folder: Pa
         (staging / "study.toml").write_text(text, encoding="utf-8", newline="\n")
         for name, figure in plan.draw_figures(study, summary).items():
             _save(figure, staging / name)
-    write_atomically(folder / SUMMARY, as_json(content))
+        names = pieces.note_staged(staging)
+    pieces.write(SUMMARY, as_json(content))
+    return [*names, SUMMARY]
 
 
 def _save(figure: Any, path: Path) -> None:  # noqa: ANN401 - a figure of matplotlib

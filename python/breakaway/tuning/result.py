@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
@@ -11,14 +10,12 @@ from typing import Any
 from breakaway.errors import StudyError
 from breakaway.scenario.files import load_method
 from breakaway.scenario.method import Method
-from breakaway.studies.folder import MANIFEST, SUMMARY, read_manifest
-from breakaway.studies.parts import PARTS
+from breakaway.studies.folder import SUMMARY, is_finished, read_summary
+from breakaway.studies.manifest import MANIFEST, kind_of, read_manifest
+from breakaway.studies.pieces import Pieces
 from breakaway.tuning.evaluation import Evaluation
 from breakaway.tuning.problem import Tuning
-from breakaway.tuning.records import Records
-
-TRIALS, UNSEEN = "trials.jsonl", "unseen.jsonl"
-"""Finished trials, and scores on unseen parts, among the parts of the folder."""
+from breakaway.tuning.records import TRIALS, Records
 
 
 class TuningResult:
@@ -29,11 +26,12 @@ class TuningResult:
         """Where it is."""
         self.manifest: Mapping[str, Any] = read_manifest(folder)
         """What determines it: the tuning, seeds, versions."""
-        if self.manifest["study"]["kind"] != "tune":
+        if kind_of(self.manifest) != "tuning":
+            kind = self.manifest["study"]["kind"]
             raise StudyError(
-                f"{folder / MANIFEST}: is of a study of the kind "
-                f"{self.manifest['study']['kind']!r}; open it with open_study"
+                f"{folder / MANIFEST}: is of a study of the kind {kind!r}; open it with open_study"
             )
+        self._pieces = Pieces(folder, self.manifest["identity"])
 
     def __repr__(self) -> str:
         state = "finished" if self.finished else "not finished"
@@ -41,8 +39,8 @@ class TuningResult:
 
     @property
     def finished(self) -> bool:
-        """Whether the tuning came to its end."""
-        return (self.folder / SUMMARY).is_file()
+        """Whether it came to its end, and its trials and the summary are as it wrote them."""
+        return is_finished(self._pieces)
 
     @cached_property
     def tuning(self) -> Tuning:
@@ -52,8 +50,16 @@ class TuningResult:
 
     @cached_property
     def evaluations(self) -> list[Evaluation]:
-        """All finished trials: their numbers, and their scores under every law."""
-        return [Evaluation.of_json(r) for r in Records(self.folder / PARTS / TRIALS).read()]
+        """All finished trials: their numbers, and their scores under every law.
+
+        Raises
+        ------
+        StudyError
+            A trial is not as it was written.
+
+        """
+        records = Records(self.folder, TRIALS, self._pieces.identity)
+        return [Evaluation.of_json(record) for record in records.read_whole()]
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -62,16 +68,15 @@ class TuningResult:
         Raises
         ------
         StudyError
-            The tuning is not finished.
+            The tuning is not finished, or its trials or the summary are not as it wrote them.
 
         """
-        if not self.finished:
+        if not (self.folder / SUMMARY).is_file():
             raise StudyError(
                 f"{self.folder}: is not finished, {len(self.evaluations)} trials are; go on with "
                 "--resume"
             )
-        summary: dict[str, Any] = json.loads((self.folder / SUMMARY).read_text(encoding="utf-8"))
-        return summary
+        return read_summary(self._pieces)
 
     @property
     def best(self) -> Method:
@@ -80,10 +85,11 @@ class TuningResult:
         Raises
         ------
         StudyError
-            The tuning is not finished, or no trial met the constraints.
+            The tuning is not finished, no trial met the constraints, or the method's file is not
+            as it was written.
 
         """
-        return load_method(self.folder / self._recommended["file"])
+        return self._method(self._recommended["file"])
 
     @property
     def best_numbers(self) -> dict[str, float]:
@@ -108,7 +114,11 @@ class TuningResult:
             The tuning is not finished.
 
         """
-        return [load_method(self.folder / row["file"]) for row in self.summary["front"]]
+        return [self._method(row["file"]) for row in self.summary["front"]]
+
+    def _method(self, name: str) -> Method:
+        self._pieces.refuse_flawed(name)
+        return load_method(self.folder / name)
 
     @property
     def _recommended(self) -> dict[str, Any]:

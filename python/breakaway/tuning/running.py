@@ -11,8 +11,9 @@ from typing import Any
 from breakaway._core import __version__
 from breakaway.errors import OutputError, StudyError
 from breakaway.scenario.method import Method
-from breakaway.studies.folder import FORMAT, MANIFEST, SUMMARY, identity_of, prepared
-from breakaway.studies.parts import PARTS
+from breakaway.studies.folder import SUMMARY, prepared
+from breakaway.studies.manifest import FORMAT, MANIFEST, identity_of
+from breakaway.studies.pieces import Pieces
 from breakaway.threads import thread_count
 from breakaway.tuning.evaluation import (
     Evaluation,
@@ -24,8 +25,8 @@ from breakaway.tuning.evaluation import (
     run_laws,
 )
 from breakaway.tuning.problem import TRIALS_MAX, Tuning
-from breakaway.tuning.records import Records
-from breakaway.tuning.result import TRIALS, UNSEEN, TuningResult, open_tuning
+from breakaway.tuning.records import TRIALS, UNSEEN, Records
+from breakaway.tuning.result import TuningResult, open_tuning
 from breakaway.tuning.scores import laws_as_json, laws_of_json
 from breakaway.tuning.search import Search
 from breakaway.tuning.summary import Found
@@ -125,10 +126,10 @@ def tune(
     folder = Path(out)
     if resume:
         _check_found(folder, asked)
-    with prepared(folder, manifest_of(asked), resume=resume, called="tuning"):
-        runner = _Runner(asked, folder, threads, progress, notice)
+    with prepared(folder, manifest_of(asked), resume=resume) as pieces:
+        runner = _Runner(asked, pieces, threads, progress, notice)
         try:
-            write_end(runner.run(search), folder)
+            write_end(runner.run(search), pieces)
         except OutputError as error:
             raise OutputError(f"{error}; finished trials stay: resume it to go on") from None
     return open_tuning(folder)
@@ -144,7 +145,9 @@ def _check_counts(trials: int | None, threads: int | None) -> None:
 
 def _check_found(folder: Path, tuning: Tuning) -> None:
     """Raise if the folder holds more trials than are asked for."""
-    found = len(Records(folder / PARTS / TRIALS).read()) if (folder / MANIFEST).exists() else 0
+    if not (folder / MANIFEST).exists():
+        return
+    found = len(Records(folder, TRIALS, manifest_of(tuning)["identity"]).read())
     if found > tuning.trials:
         raise StudyError(
             f"trials: {tuning.trials} is less than the {found} that {folder} holds; give at least "
@@ -169,15 +172,16 @@ class _Runner:
     def __init__(
         self,
         tuning: Tuning,
-        folder: Path,
+        pieces: Pieces,
         threads: int | None,
         progress: Callable[[TuningProgress], None] | None,
         notice: Callable[[str], None] | None,
     ) -> None:
-        self._tuning, self._folder, self._threads = tuning, folder, threads
+        self._tuning, self._pieces, self._threads = tuning, pieces, threads
         self._progress, self._notice = progress, notice
-        self._trials = Records(folder / PARTS / TRIALS)
-        self._scored = Records(folder / PARTS / UNSEEN)
+        self._trials, self._scored = (
+            Records(pieces.folder, name, pieces.identity) for name in (TRIALS, UNSEEN)
+        )
         self._done: list[Evaluation] = []
         self._best: dict[str, float] = {}
         self._runs_done, self._runs_found = 0, 0
@@ -187,7 +191,7 @@ class _Runner:
         """Run what is not on disk, and give all."""
         kept = self._intact(self._trials)
         if len(kept) < self._tuning.trials:
-            (self._folder / SUMMARY).unlink(missing_ok=True)  # it is not finished any more
+            self._pieces.remove(SUMMARY)  # it is not finished any more
         for number in range(self._tuning.trials):
             evaluation = self._evaluation(number, search.ask(), kept)
             search.tell(evaluation)
@@ -200,8 +204,8 @@ class _Runner:
         kept = records.read()
         if len(kept) < records.lines():
             self._say(
-                f"{records.path.name}: line {len(kept) + 1} was not finished or is damaged; it and "
-                "what follows is computed again"
+                f"{records.path.name}: line {len(kept) + 1} was not finished, or is not as it was "
+                "written; it and what follows is computed again"
             )
             records.replace(kept)
         return kept
@@ -215,7 +219,8 @@ class _Runner:
                 self._count(self._tuning.training, found=True)
                 return found
             self._say(
-                f"{TRIALS}: trial {number} is another one; it and what follows is tried again"
+                f"{self._trials.path.name}: trial {number} is another one; it and what follows is "
+                "tried again"
             )
             del kept[number:]
             self._trials.replace(kept)

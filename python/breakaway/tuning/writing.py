@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
-from contextlib import suppress
 from pathlib import Path
 
 import tomli_w
 
-from breakaway.output import output_folder, write_atomically
+from breakaway.output import output_folder
+from breakaway.ownership import STUDY
 from breakaway.scenario.method import Method
 from breakaway.studies.folder import SUMMARY, as_csv, as_json
+from breakaway.studies.pieces import Pieces
 from breakaway.text import toml_comment
 from breakaway.tuning.evaluation import Evaluation
+from breakaway.tuning.records import RECORDS
 from breakaway.tuning.summary import Found, Row, content_of, pareto_rows, trial_rows
 
 BEST = "best.toml"
@@ -21,24 +23,27 @@ POINT = re.compile(r"best\.toml|pareto_\d{2,}\.toml")
 """Files that a point of the front can have."""
 
 
-def write_end(found: Found, folder: Path) -> None:
+def write_end(found: Found, pieces: Pieces) -> None:
     """Write tables, methods, figures, and last the summary, which says that it is done."""
     content = content_of(found)
     methods = {found.file(evaluation): evaluation for evaluation in found.front}
     if found.best is not None:
         methods[BEST] = found.best
-    with output_folder(folder) as staging:
+    with output_folder(pieces.folder, STUDY) as staging:
         (staging / "trials.csv").write_text(as_csv(trial_rows(found)), "utf-8", newline="")
         (staging / "pareto.csv").write_text(as_csv(pareto_rows(found)), "utf-8", newline="")
         for name, evaluation in methods.items():
             text = method_toml(found, evaluation, name)
             (staging / name).write_text(text, "utf-8", newline="\n")
         _draw(found, staging, content)
-    for path in folder.glob("*.toml"):
-        if POINT.fullmatch(path.name) and path.name not in methods:  # of fewer trials than now
-            with suppress(OSError):
-                path.unlink()
-    write_atomically(folder / SUMMARY, as_json(content))
+        names = pieces.note_staged(staging)
+    for name in pieces.names():
+        if POINT.fullmatch(name) and name not in methods:  # of fewer trials than now
+            pieces.remove(name)
+    for name in RECORDS:
+        pieces.note_written(name)
+    pieces.write(SUMMARY, as_json(content))
+    pieces.settle([*names, *RECORDS, SUMMARY])
 
 
 def method_toml(found: Found, evaluation: Evaluation, file: str) -> str:
