@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from breakaway import _core
-from breakaway.batch.columns import core_columns, with_nominal_controller
+from breakaway.run.batch.columns import core_columns, with_nominal_controller
 
 ROOT = Path(__file__).parents[1]
 SIMULATED_S = 0.5

@@ -60,7 +60,7 @@ def seeds(name: str) -> list[bytes]:
         with tempfile.TemporaryDirectory() as folder:
             return [target.seed(Path(folder))]
     if rest in PRESETS:
-        presets = files("breakaway.presets").joinpath(*PRESETS[rest].split())
+        presets = files("breakaway.model.presets").joinpath(*PRESETS[rest].split())
         return [p.read_bytes() for p in presets.iterdir() if p.name.endswith(".toml")]
     plain = {"study": STUDY, "tuning": TUNING, "mapping": MAPPING}
     return [tomli_w.dumps(plain[rest]).encode()] if rest in plain else [_joint()]

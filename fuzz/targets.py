@@ -16,9 +16,9 @@ from typing import Any
 from unittest.mock import patch
 
 import breakaway as bk
+from breakaway.ask.studies.sweep import SweepPlan
 from breakaway.errors import BreakawayError
-from breakaway.logs.mapping import load_mapping
-from breakaway.studies.sweep import SweepPlan
+from breakaway.measure.logs.mapping import load_mapping
 
 MEMORY_BYTES = 256 * 2**20
 """What a log may take here."""

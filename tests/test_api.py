@@ -128,7 +128,8 @@ def test_changing(scenario):
 def test_names_are_functions_whatever_is_used_first(first):
     """Importing a module must not put it in the place of a function."""
     code = (
-        f"import breakaway as bk; bk.{first}; import breakaway.simulation, breakaway.resolution\n"
+        f"import breakaway as bk; bk.{first}\n"
+        "import breakaway.run.simulation, breakaway.run.resolution\n"
         "scenario = bk.load_scenario('paper_as_computed')\n"
         "assert bk.simulate(bk.resolve(scenario)).outcome == 'released'\n"
     )

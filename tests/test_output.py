@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 import breakaway as bk
-from breakaway.errors import OutputError
-from breakaway.output import (
+from breakaway.base.output import (
     append_inside,
     output_folder,
     remove_inside,
@@ -19,8 +18,9 @@ from breakaway.output import (
     write_atomically,
     write_inside,
 )
-from breakaway.ownership import RUN
-from breakaway.run_output import run_summary, write_run
+from breakaway.base.ownership import RUN
+from breakaway.errors import OutputError
+from breakaway.show.run_files import run_summary, write_run
 
 
 def test_write_replaces_the_whole_file(tmp_path: Path) -> None:

@@ -7,11 +7,10 @@ from typing import Any
 import pytest
 
 import breakaway as bk
-from breakaway.comparison.asked import ask
-from breakaway.errors import BreakawayError, ScenarioError, StudyError
-from breakaway.identification import JointFile
-from breakaway.logs import FORMATS, read_log
-from breakaway.reading import (
+from breakaway.ask.comparison.asked import ask
+from breakaway.ask.studies.files import load_study
+from breakaway.ask.tuning.files import load_tuning
+from breakaway.base.reading import (
     LONGEST_WORD,
     MOST_TEXT_BYTES,
     open_regular,
@@ -21,10 +20,11 @@ from breakaway.reading import (
     table_of,
     text_of,
 )
-from breakaway.scenario import save_scenario
-from breakaway.scenario.files import load_method, load_population, load_stack
-from breakaway.studies.files import load_study
-from breakaway.tuning.files import load_tuning
+from breakaway.errors import BreakawayError, ScenarioError, StudyError
+from breakaway.measure.identification import JointFile
+from breakaway.measure.logs import FORMATS, read_log
+from breakaway.model.scenario import save_scenario
+from breakaway.model.scenario.files import load_method, load_population, load_stack
 
 LOADERS: dict[str, Callable[[Path], Any]] = {
     "scenario": bk.load_scenario,

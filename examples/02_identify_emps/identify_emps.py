@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from breakaway.identification import identify_inertia_friction
-from breakaway.logs import read_log
+from breakaway.measure.identification import identify_inertia_friction
+from breakaway.measure.logs import read_log
 
 DEFAULT = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"
 

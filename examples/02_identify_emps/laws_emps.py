@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 import breakaway as bk
-from breakaway.identification.verdicts import stiction_peak
-from breakaway.report.identification import save_identification_report
+from breakaway.measure.identification.verdicts import stiction_peak
+from breakaway.show.report.identification import save_identification_report
 
 DEFAULT = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from breakaway.studies import load_study, run_study
+from breakaway.ask.studies import load_study, run_study
 
 HERE = Path(__file__).parent
 

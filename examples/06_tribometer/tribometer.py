@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 import breakaway as bk
-from breakaway.report.identification import save_identification_report
+from breakaway.show.report.identification import save_identification_report
 
 DEFAULT = Path(__file__).parents[2] / "../shared/data/tribometer/tribometer.csv"
 FITTED_S = 35.0

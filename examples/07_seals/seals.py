@@ -4,11 +4,11 @@ import argparse
 from pathlib import Path
 
 from breakaway.errors import LogError
-from breakaway.identification.events import BreakawayReport, find_breakaway_events
-from breakaway.identification.population import fit_population
-from breakaway.logs import Log, read_log
-from breakaway.plots.events import plot_breakaway, plot_breakaway_ratios
-from breakaway.plots.style import save_figure
+from breakaway.measure.identification.events import BreakawayReport, find_breakaway_events
+from breakaway.measure.identification.population import fit_population
+from breakaway.measure.logs import Log, read_log
+from breakaway.show.plots.events import plot_breakaway, plot_breakaway_ratios
+from breakaway.show.plots.style import save_figure
 
 DEFAULT = Path(__file__).parents[2] / "../shared/data/seals"
 

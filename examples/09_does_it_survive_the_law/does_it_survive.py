@@ -3,8 +3,8 @@
 from argparse import ArgumentParser
 from pathlib import Path
 
-from breakaway.studies import AgreementStudy, load_study, run_study
-from breakaway.studies.files import parse_study
+from breakaway.ask.studies import AgreementStudy, load_study, run_study
+from breakaway.ask.studies.files import parse_study
 
 HERE = Path(__file__).parent
 EFFECTS = "vibration", "disturbance"

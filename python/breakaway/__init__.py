@@ -16,10 +16,40 @@ from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioErro
 
 if TYPE_CHECKING:
     from breakaway import design
-    from breakaway.batch import Batch, draw_columns, grid_columns, simulate_many
-    from breakaway.comparison import Comparison, compare_methods
+    from breakaway.ask.comparison import Comparison, compare_methods
+    from breakaway.ask.studies import (
+        AgreementStudy,
+        AgreementTable,
+        AgreementVariant,
+        ComparedController,
+        CompareStudy,
+        CompareTable,
+        RobustnessStudy,
+        RobustnessTable,
+        SensitivityStudy,
+        SensitivityTable,
+        SmallestTable,
+        StudyProgress,
+        StudyResult,
+        SweepStudy,
+        SweepTable,
+        load_study,
+        open_study,
+        run_study,
+    )
+    from breakaway.ask.tuning import (
+        PartRange,
+        ScoreBound,
+        TunedNumber,
+        Tuning,
+        TuningProgress,
+        TuningResult,
+        load_tuning,
+        open_tuning,
+        tune,
+    )
     from breakaway.export import ExportedC, ExportedFmu, export_c, export_fmu
-    from breakaway.identification import (
+    from breakaway.measure.identification import (
         BreakawayEvent,
         BreakawayReport,
         Cascade,
@@ -38,11 +68,8 @@ if TYPE_CHECKING:
         identify,
         identify_inertia_friction,
     )
-    from breakaway.imposed import ImposedMotion, impose_motion
-    from breakaway.logs import Channel, Finding, Log, derive_motion, noise_floor, read_log
-    from breakaway.resolution import resolve
-    from breakaway.run import Outcome, Run, RunMetrics
-    from breakaway.scenario import (
+    from breakaway.measure.logs import Channel, Finding, Log, derive_motion, noise_floor, read_log
+    from breakaway.model.scenario import (
         BandLimitedDisturbance,
         Contact,
         CoulombStiction,
@@ -102,46 +129,19 @@ if TYPE_CHECKING:
         save_scenario,
         scenario_schema,
     )
-    from breakaway.simulation import simulate
-    from breakaway.studies import (
-        AgreementStudy,
-        AgreementTable,
-        AgreementVariant,
-        ComparedController,
-        CompareStudy,
-        CompareTable,
-        RobustnessStudy,
-        RobustnessTable,
-        SensitivityStudy,
-        SensitivityTable,
-        SmallestTable,
-        StudyProgress,
-        StudyResult,
-        SweepStudy,
-        SweepTable,
-        load_study,
-        open_study,
-        run_study,
-    )
-    from breakaway.trials import Trial, draw_parts, run_trial
-    from breakaway.tuning import (
-        PartRange,
-        ScoreBound,
-        TunedNumber,
-        Tuning,
-        TuningProgress,
-        TuningResult,
-        load_tuning,
-        open_tuning,
-        tune,
-    )
+    from breakaway.run.batch import Batch, draw_columns, grid_columns, simulate_many
+    from breakaway.run.finished import Outcome, Run, RunMetrics
+    from breakaway.run.imposed import ImposedMotion, impose_motion
+    from breakaway.run.resolution import resolve
+    from breakaway.run.simulation import simulate
+    from breakaway.run.trials import Trial, draw_parts, run_trial
 
 # Where each public name lives; loaded on first use, so that `import breakaway` stays quick.
 _HOMES = {
-    "breakaway.batch": ("Batch", "draw_columns", "grid_columns", "simulate_many"),
-    "breakaway.comparison": ("Comparison", "compare_methods"),
+    "breakaway.run.batch": ("Batch", "draw_columns", "grid_columns", "simulate_many"),
+    "breakaway.ask.comparison": ("Comparison", "compare_methods"),
     "breakaway.export": ("ExportedC", "ExportedFmu", "export_c", "export_fmu"),
-    "breakaway.identification": (
+    "breakaway.measure.identification": (
         "BreakawayEvent",
         "BreakawayReport",
         "Cascade",
@@ -160,11 +160,18 @@ _HOMES = {
         "identify",
         "identify_inertia_friction",
     ),
-    "breakaway.imposed": ("ImposedMotion", "impose_motion"),
-    "breakaway.logs": ("Channel", "Finding", "Log", "derive_motion", "noise_floor", "read_log"),
-    "breakaway.resolution": ("resolve",),
-    "breakaway.run": ("Outcome", "Run", "RunMetrics"),
-    "breakaway.scenario": (
+    "breakaway.run.imposed": ("ImposedMotion", "impose_motion"),
+    "breakaway.measure.logs": (
+        "Channel",
+        "Finding",
+        "Log",
+        "derive_motion",
+        "noise_floor",
+        "read_log",
+    ),
+    "breakaway.run.resolution": ("resolve",),
+    "breakaway.run.finished": ("Outcome", "Run", "RunMetrics"),
+    "breakaway.model.scenario": (
         "BandLimitedDisturbance",
         "Contact",
         "CoulombStiction",
@@ -224,9 +231,9 @@ _HOMES = {
         "save_scenario",
         "scenario_schema",
     ),
-    "breakaway.simulation": ("simulate",),
-    "breakaway.trials": ("Trial", "draw_parts", "run_trial"),
-    "breakaway.tuning": (
+    "breakaway.run.simulation": ("simulate",),
+    "breakaway.run.trials": ("Trial", "draw_parts", "run_trial"),
+    "breakaway.ask.tuning": (
         "PartRange",
         "ScoreBound",
         "TunedNumber",
@@ -237,7 +244,7 @@ _HOMES = {
         "open_tuning",
         "tune",
     ),
-    "breakaway.studies": (
+    "breakaway.ask.studies": (
         "AgreementStudy",
         "AgreementTable",
         "AgreementVariant",

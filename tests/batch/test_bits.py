@@ -7,8 +7,8 @@ import pytest
 
 import breakaway as bk
 from breakaway import _core
-from breakaway.batch import METRICS
-from breakaway.batch.columns import number_paths, with_nominal_controller
+from breakaway.run.batch import METRICS
+from breakaway.run.batch.columns import number_paths, with_nominal_controller
 
 FIGURES = METRICS[:-1]
 INSTRUCTIONS = _core.instructions()

@@ -8,8 +8,8 @@ import pytest
 
 import breakaway as bk
 from breakaway import _core
-from breakaway.batch import METRICS
-from breakaway.batch.columns import core_columns, number_paths
+from breakaway.run.batch import METRICS
+from breakaway.run.batch.columns import core_columns, number_paths
 
 STICTION = "joint.stiction_n"
 

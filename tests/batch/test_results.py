@@ -9,7 +9,7 @@ import pytest
 
 import breakaway as bk
 from breakaway import _core
-from breakaway.batch import METRICS
+from breakaway.run.batch import METRICS
 
 UNITS = {
     "joint.stiction_n": "N",
@@ -161,7 +161,7 @@ def test_pandas_that_is_not_installed(batch, monkeypatch):
             raise ImportError(name)
         return real(name, *rest)
 
-    monkeypatch.setattr("breakaway.batch.batch.import_module", missing)
+    monkeypatch.setattr("breakaway.run.batch.batch.import_module", missing)
     with pytest.raises(bk.StudyError, match=r"pip install 'breakaway\[pandas\]'$"):
         batch.to_pandas()
     assert builtins.__import__ is not missing

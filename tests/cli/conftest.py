@@ -9,8 +9,8 @@ import pytest
 from typer.testing import CliRunner
 
 from breakaway.cli.app import app
-from breakaway.identification import JointFile, identify_inertia_friction
-from breakaway.logs import Log, read_log
+from breakaway.measure.identification import JointFile, identify_inertia_friction
+from breakaway.measure.logs import Log, read_log
 
 PLAIN = {"NO_COLOR": "1", "_TYPER_FORCE_DISABLE_TERMINAL": "1", "TERMINAL_WIDTH": "100"}
 

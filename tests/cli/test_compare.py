@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from breakaway.comparison.asked import ask
+from breakaway.ask.comparison.asked import ask
 
 Call = Callable[..., Any]
 COMMAND = [sys.executable, "-m", "breakaway.cli.main"]
@@ -59,7 +59,7 @@ def given(tmp_path: Path) -> list[str]:
 
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("breakaway.comparison.comparing.write_end", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.comparison.comparing.write_end", lambda *_: None)
 
 
 def test_it_says_the_table_and_lists_its_files(

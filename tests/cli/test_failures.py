@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import breakaway as bk
-from breakaway.identification import JointFile
+from breakaway.measure.identification import JointFile
 
 Call = Callable[..., Any]
 COMMAND = [sys.executable, "-m", "breakaway.cli.main"]
@@ -111,7 +111,7 @@ def test_an_unwritable_place_exits_with_3(
 def test_an_unwritable_folder_is_found_before_the_simulation(
     call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    home = importlib.import_module("breakaway.simulation")
+    home = importlib.import_module("breakaway.run.simulation")
     monkeypatch.setattr(home, "simulate", lambda *_: pytest.fail("simulated"))
     (tmp_path / "file").write_text("")
     assert call("run", "paper_as_computed", "--out", tmp_path / "file").exit_code == 3
@@ -171,7 +171,7 @@ def test_ctrl_c_ends_a_fit_with_the_best_so_far(tmp_path: Path) -> None:
     np.savetxt(log, table, "%.9g", ",", header="t_s,position_m,force_n", comments="")
     script = (  # says when the fit is under way
         "import importlib, sys\n"
-        "home = importlib.import_module('breakaway.identification.output_error')\n"
+        "home = importlib.import_module('breakaway.measure.identification.output_error')\n"
         "plain = home.minimize\n"
         "def minimize(*args):\n"
         "    print('fitting', file=sys.stderr, flush=True)\n"

@@ -12,10 +12,15 @@ import pytest
 from scipy.io import savemat
 
 from breakaway.cli.identify import LawChoice, LogFormat, LossChoice, MotionChoice
-from breakaway.identification import LAWS, NOT_IDENTIFIED, JointFile, identify_inertia_friction
-from breakaway.identification.output_error import LOSSES
-from breakaway.identification.record import MOTIONS
-from breakaway.logs import FORMATS, read_log
+from breakaway.measure.identification import (
+    LAWS,
+    NOT_IDENTIFIED,
+    JointFile,
+    identify_inertia_friction,
+)
+from breakaway.measure.identification.output_error import LOSSES
+from breakaway.measure.identification.record import MOTIONS
+from breakaway.measure.logs import FORMATS, read_log
 
 Call = Callable[..., Any]
 
@@ -235,7 +240,6 @@ def test_the_format_is_guessed_or_given(call: Call, rig_csv: Path, tmp_path: Pat
 def test_a_report_is_written_beside_the_joint_file(
     call: Call, log_csv: Path, tmp_path: Path, law: tuple[Any, ...]
 ) -> None:
-    pytest.importorskip("breakaway.report.identification", reason="the report is not there yet")
     out = tmp_path / "joint.toml"
     words = words_of(call("identify", log_csv, *law, "--out", out, "--report"))
     page = tmp_path / "joint.html"

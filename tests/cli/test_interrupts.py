@@ -9,7 +9,7 @@ LOST = """
 import signal
 from breakaway.cli.interrupts import note_interrupts, raise_if_interrupted
 from breakaway.cli.progress import counted, shown_progress
-from breakaway.studies import StudyProgress
+from breakaway.ask.studies import StudyProgress
 note_interrupts()
 raise_if_interrupted()
 try:

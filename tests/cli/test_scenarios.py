@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 import breakaway as bk
-from breakaway.scenario import parse_scenario
-from breakaway.scenario.template import scenario_template
+from breakaway.model.scenario import parse_scenario
+from breakaway.model.scenario.template import scenario_template
 
 Call = Callable[..., Any]
 COMMANDS = ("run", "design", "identify", "presets", "init", "schema", "reproduce", "study")

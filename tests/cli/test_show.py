@@ -12,7 +12,7 @@ import pytest
 
 from breakaway.cli.quantity import show_uncertain, show_value, split_unit
 from breakaway.cli.show import Sheet, plain, say
-from breakaway.run import RunMetrics
+from breakaway.run.finished import RunMetrics
 
 Call = Callable[..., Any]
 
@@ -126,7 +126,7 @@ def test_reproduce_shows_the_table_and_the_report_last(
         progress(f"into {out}")
         return Reproduced()
 
-    module = ModuleType("breakaway.report.reproduction")
+    module = ModuleType("breakaway.ask.reproduction.report")
     module.__dict__["reproduce"] = fake
     monkeypatch.setitem(sys.modules, module.__name__, module)
     shown = call("reproduce", "--out", tmp_path / "paper")

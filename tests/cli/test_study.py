@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 import breakaway as bk
+from breakaway.ask.studies import StudyProgress
 from breakaway.cli.progress import progress_in_words
-from breakaway.studies import StudyProgress
 
 Call = Callable[..., Any]
 COMMAND = [sys.executable, "-m", "breakaway.cli.main"]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import breakaway as bk
+from breakaway.base.output import output_folder, write_atomically
+from breakaway.base.ownership import RUN
 from breakaway.errors import OutputError
-from breakaway.output import output_folder, write_atomically
-from breakaway.ownership import RUN
 
 
 @pytest.fixture

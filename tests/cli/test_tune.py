@@ -40,7 +40,7 @@ FIGURES = {
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures out, which take longer than the trials."""
-    monkeypatch.setattr("breakaway.tuning.writing._draw", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.tuning.writing._draw", lambda *_: None)
 
 
 def write(tmp_path: Path, **changes: str) -> Path:

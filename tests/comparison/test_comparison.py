@@ -13,11 +13,11 @@ import pytest
 from scipy import stats
 
 import breakaway as bk
-from breakaway.comparison.asked import Asked
-from breakaway.comparison.courses import course_of, kept_rows, worst_slip
-from breakaway.comparison.findings import sentences_of
-from breakaway.comparison.table import median_row, table_of, worst_row
-from breakaway.trials import Trial
+from breakaway.ask.comparison.asked import Asked
+from breakaway.ask.comparison.courses import course_of, kept_rows, worst_slip
+from breakaway.ask.comparison.findings import sentences_of
+from breakaway.ask.comparison.table import median_row, table_of, worst_row
+from breakaway.run.trials import Trial
 
 LAWS = ["lugre", "elasto_plastic"]
 

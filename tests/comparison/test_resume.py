@@ -14,7 +14,7 @@ import pyarrow.parquet as parquet
 import pytest
 
 import breakaway as bk
-from breakaway.comparison.asked import Asked
+from breakaway.ask.comparison.asked import Asked
 
 SCRIPT = """
 import sys
@@ -34,7 +34,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures and page out, which take longer than the trials."""
-    monkeypatch.setattr("breakaway.comparison.comparing.write_end", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.comparison.comparing.write_end", lambda *_: None)
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def test_a_finished_comparison_computes_and_draws_nothing(whole, tmp_path, monke
     folder = shutil.copytree(whole, tmp_path / "done")
     for name in ("run_trial", "write_end"):
         monkeypatch.setattr(
-            f"breakaway.comparison.comparing.{name}", lambda *_, **__: pytest.fail("again")
+            f"breakaway.ask.comparison.comparing.{name}", lambda *_, **__: pytest.fail("again")
         )
     bk.compare_methods(folder / "comparison.toml", out=folder, resume=True)
     assert contents(folder) == contents(whole)

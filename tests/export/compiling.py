@@ -13,7 +13,7 @@ import pytest
 import breakaway as bk
 from breakaway.export.recording import Recording, record
 from breakaway.export.vectors import COLUMNS, reference
-from breakaway.resolution import resolve
+from breakaway.run.resolution import resolve
 
 FLAGS = (
     "-std=c99",

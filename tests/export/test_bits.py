@@ -11,11 +11,11 @@ from tests.export.compiling import compiled, same_bits
 from tests.export.kinds import CONTROLLERS, LENGTH_M, LOOPS, PLANTS
 
 import breakaway as bk
-from breakaway.scenario.actuator import Actuator
-from breakaway.scenario.controller import Controller
-from breakaway.scenario.disturbance import Disturbance
-from breakaway.scenario.joint import Joint
-from breakaway.scenario.reference import Reference
+from breakaway.model.scenario.actuator import Actuator
+from breakaway.model.scenario.controller import Controller
+from breakaway.model.scenario.disturbance import Disturbance
+from breakaway.model.scenario.joint import Joint
+from breakaway.model.scenario.reference import Reference
 
 REALS = ("double", "float")
 CONTROLLER_STEPS = 13_000

@@ -15,7 +15,7 @@ from tests.firmware.cases import STEPS, Case, expected_of, inputs_of, read_by
 import breakaway as bk
 from breakaway.export.recording import Recording, record
 from breakaway.export.vectors import reference
-from breakaway.resolution import resolve
+from breakaway.run.resolution import resolve
 
 LOGGED_STEPS = 6000
 """Steps whose instructions are also counted one by one in the emulator's log."""

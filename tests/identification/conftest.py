@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from breakaway.identification import Identification, identify
-from breakaway.logs import Log
+from breakaway.measure.identification import Identification, identify
+from breakaway.measure.logs import Log
 
 Array = npt.NDArray[np.float64]
 Truth = Mapping[str, float]

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from breakaway.errors import LogError
-from breakaway.identification import LAWS, compare_laws
-from breakaway.logs import Log
+from breakaway.measure.identification import LAWS, compare_laws
+from breakaway.measure.logs import Log
 
 
 @pytest.fixture(scope="module")

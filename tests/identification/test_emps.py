@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from breakaway.identification import Cascade, Identification, identify
-from breakaway.identification.verdicts import stiction_peak
-from breakaway.logs import Log, read_log
+from breakaway.measure.identification import Cascade, Identification, identify
+from breakaway.measure.identification.verdicts import stiction_peak
+from breakaway.measure.logs import Log, read_log
 
 EMPS = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"
 pytestmark = pytest.mark.skipif(

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from breakaway.errors import LogError
-from breakaway.identification.events import BreakawayEvent, find_breakaway_events
-from breakaway.identification.stretches import find_stretches, noise
-from breakaway.logs.log import Log
+from breakaway.measure.identification.events import BreakawayEvent, find_breakaway_events
+from breakaway.measure.identification.stretches import find_stretches, noise
+from breakaway.measure.logs.log import Log
 
 Array = npt.NDArray[np.float64]
 

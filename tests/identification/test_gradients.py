@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from breakaway.identification import LAWS, Cascade, identify
-from breakaway.logs import Log
-from breakaway.scenario import Pid
-from breakaway.scenario.controller import Gains
+from breakaway.measure.identification import LAWS, Cascade, identify
+from breakaway.measure.logs import Log
+from breakaway.model.scenario import Pid
+from breakaway.model.scenario.controller import Gains
 
 CASCADE = Cascade(position_gain_per_s=60.0, velocity_gain_n_s_per_m=400.0, force_limit_n=100.0)
 PID = Pid(gains=Gains(kp_n_per_m=2e4, ki_n_per_m_s=1e5, kd_n_s_per_m=300.0))

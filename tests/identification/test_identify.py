@@ -13,12 +13,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from breakaway.base.threads import usable_processors
 from breakaway.errors import LogError
-from breakaway.identification import LAWS, Cascade, Identification, JointFile, identify
-from breakaway.logs import Log
-from breakaway.scenario import Pid
-from breakaway.scenario.controller import Gains
-from breakaway.threads import usable_processors
+from breakaway.measure.identification import LAWS, Cascade, Identification, JointFile, identify
+from breakaway.measure.logs import Log
+from breakaway.model.scenario import Pid
+from breakaway.model.scenario.controller import Gains
 
 CASCADE = Cascade(position_gain_per_s=60.0, velocity_gain_n_s_per_m=400.0, force_limit_n=100.0)
 PID = Pid(
@@ -262,7 +262,7 @@ def test_the_same_seed_gives_the_same_bits_on_any_number_of_threads(
 ) -> None:
     one = identify(rich, law="stribeck", starts=4, seed=3)
     again = identify(rich, law="stribeck", starts=4, seed=3)
-    home = importlib.import_module("breakaway.identification.output_error")
+    home = importlib.import_module("breakaway.measure.identification.output_error")
     monkeypatch.setattr(home, "usable_processors", lambda: 1)
     alone = identify(rich, law="stribeck", starts=4, seed=3)
     assert one.estimates == again.estimates == alone.estimates

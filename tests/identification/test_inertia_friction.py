@@ -9,8 +9,8 @@ import pytest
 from scipy.signal import sawtooth
 
 from breakaway.errors import LogError
-from breakaway.identification import InertiaFrictionFit, identify_inertia_friction
-from breakaway.logs import Log, read_log
+from breakaway.measure.identification import InertiaFrictionFit, identify_inertia_friction
+from breakaway.measure.logs import Log, read_log
 
 EMPS = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"
 

@@ -10,7 +10,7 @@ import pytest
 
 import breakaway as bk
 from breakaway.errors import LogError, OutputError, ScenarioError
-from breakaway.identification import (
+from breakaway.measure.identification import (
     Cascade,
     Identification,
     InertiaFrictionFit,
@@ -18,7 +18,7 @@ from breakaway.identification import (
     identify,
     identify_inertia_friction,
 )
-from breakaway.logs import Log
+from breakaway.measure.logs import Log
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from breakaway._core import RIG_NUMBERS
 from breakaway.errors import LogError
-from breakaway.identification.laws import LAWS, Layout, Parameter, check_law
+from breakaway.measure.identification.laws import LAWS, Layout, Parameter, check_law
 
 
 def names(law: str, offsets: int = 1, **options: bool) -> list[str]:

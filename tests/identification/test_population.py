@@ -7,12 +7,16 @@ import numpy.typing as npt
 import pytest
 
 import breakaway as bk
+from breakaway.ask.studies.study import RobustnessStudy
 from breakaway.errors import LogError
-from breakaway.identification.censored import FittedDistribution, fit_distribution, kaplan_meier
-from breakaway.identification.events import BreakawayReport, find_breakaway_events
-from breakaway.identification.population import fit_population
-from breakaway.logs.log import Log
-from breakaway.studies.study import RobustnessStudy
+from breakaway.measure.identification.censored import (
+    FittedDistribution,
+    fit_distribution,
+    kaplan_meier,
+)
+from breakaway.measure.identification.events import BreakawayReport, find_breakaway_events
+from breakaway.measure.identification.population import fit_population
+from breakaway.measure.logs.log import Log
 
 MEDIAN_N, SIGMA = 450.0, 0.3
 

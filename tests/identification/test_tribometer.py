@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from breakaway.identification import ComparedLaw, compare_laws
-from breakaway.logs import read_log
+from breakaway.measure.identification import ComparedLaw, compare_laws
+from breakaway.measure.logs import read_log
 
 TRIBOMETER = Path(__file__).parents[2] / "../shared/data/tribometer/tribometer.csv"
 pytestmark = pytest.mark.skipif(

@@ -8,9 +8,9 @@ import numpy.typing as npt
 import pytest
 
 from breakaway.errors import LogError
-from breakaway.identification import Identification, identify
-from breakaway.identification.uncertainty import correlation_window, covariance
-from breakaway.logs import Log
+from breakaway.measure.identification import Identification, identify
+from breakaway.measure.identification.uncertainty import correlation_window, covariance
+from breakaway.measure.logs import Log
 
 T_S = np.arange(300) / 150.0
 X = 0.02 * np.sin(5 * T_S) + 0.01 * np.sin(13 * T_S + 1)

@@ -8,9 +8,9 @@ import numpy.typing as npt
 import pytest
 
 from breakaway.errors import LogError
-from breakaway.identification import Identification, Verdict, identifiability, identify
-from breakaway.identification.verdicts import stiction_peak
-from breakaway.logs import Log
+from breakaway.measure.identification import Identification, Verdict, identifiability, identify
+from breakaway.measure.identification.verdicts import stiction_peak
+from breakaway.measure.logs import Log
 
 Array = npt.NDArray[np.float64]
 T_S = np.arange(2000) / 500.0

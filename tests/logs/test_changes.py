@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from breakaway.errors import LogError
-from breakaway.logs import Channel, Log
+from breakaway.measure.logs import Channel, Log
 
 FAST, SLOW = np.arange(5000) / 1000.0, 3.0 + np.arange(400) / 200.0
 

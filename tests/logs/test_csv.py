@@ -11,7 +11,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from breakaway.errors import LogError
-from breakaway.logs import Log, read_log
+from breakaway.measure.logs import Log, read_log
 
 Write = Callable[..., Path]
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy import signal
 
 from breakaway.errors import LogError
-from breakaway.logs import Log, derive_motion, noise_floor, read_log
-from breakaway.logs.derived import default_lowpass_hz
+from breakaway.measure.logs import Log, derive_motion, noise_floor, read_log
+from breakaway.measure.logs.derived import default_lowpass_hz
 
 EMPS = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"
 T_S = np.arange(20000) / 1000.0

@@ -8,7 +8,7 @@ import pytest
 from scipy.io import savemat
 
 from breakaway.errors import LogError
-from breakaway.logs import read_log
+from breakaway.measure.logs import read_log
 
 EMPS = Path(__file__).parents[2] / "../shared/data/emps/DATA_EMPS.mat"
 

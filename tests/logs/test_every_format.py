@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from breakaway.errors import LogError
-from breakaway.logs import Log, read_log
+from breakaway.measure.logs import Log, read_log
 
 FLIPS = 60
 """Damaged copies of each file in one test."""

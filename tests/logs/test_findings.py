@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from breakaway.logs import Finding, Log, read_log
-from breakaway.logs.findings import quantum
+from breakaway.measure.logs import Finding, Log, read_log
+from breakaway.measure.logs.findings import quantum
 
 DATA = Path(__file__).parents[2] / "../shared/data"
 measured = pytest.mark.skipif(

@@ -16,7 +16,7 @@ from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
 from breakaway.errors import LogError
-from breakaway.logs import read_log
+from breakaway.measure.logs import read_log
 
 T_S = np.arange(50) / 100.0
 NAMED = {"t_s": T_S, "position_m": 2.0 * T_S, "force_n": np.ones(50)}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from breakaway.errors import LogError
-from breakaway.logs import Channel, Log
+from breakaway.measure.logs import Channel, Log
 
 
 def arrays(rows: int = 40) -> dict[str, np.ndarray]:

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from breakaway.errors import LogError
-from breakaway.logs import read_log
-from breakaway.logs.names import read_header
-from breakaway.logs.units import si_symbol, stated, unit_of
+from breakaway.measure.logs import read_log
+from breakaway.measure.logs.names import read_header
+from breakaway.measure.logs.units import si_symbol, stated, unit_of
 
 
 def write(folder: Path, header: str, scale: float = 1.0) -> Path:

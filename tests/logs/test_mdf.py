@@ -15,10 +15,10 @@ from asammdf.blocks.v4_blocks import ChannelConversion
 from tests.logs.mdf_files import FLOAT, ROWS, SIGNED, T_S, UNSIGNED, Maker, signal, write
 
 from breakaway.errors import LogError
-from breakaway.logs import read_log
-from breakaway.logs.budget import Budget
-from breakaway.logs.mdf import read_mdf
-from breakaway.logs.raw import RawFile
+from breakaway.measure.logs import read_log
+from breakaway.measure.logs.budget import Budget
+from breakaway.measure.logs.mdf import read_mdf
+from breakaway.measure.logs.raw import RawFile
 
 HIGHEST_FIRST = 1
 TIME = {"kind": 2, "counts": 1}

@@ -11,10 +11,10 @@ from asammdf.blocks.v4_blocks import ChannelConversion
 from tests.logs.mdf_files import converted, write
 
 from breakaway.errors import LogError
-from breakaway.logs import read_log
-from breakaway.logs.budget import Budget
-from breakaway.logs.mdf import read_mdf
-from breakaway.logs.mdf.conversion import ConversionError, Ranges, Table
+from breakaway.measure.logs import read_log
+from breakaway.measure.logs.budget import Budget
+from breakaway.measure.logs.mdf import read_mdf
+from breakaway.measure.logs.mdf.conversion import ConversionError, Ranges, Table
 
 Conversion = ChannelConversion
 

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from breakaway.logs.mdf.formula import FUNCTIONS, FormulaError, parse
+from breakaway.measure.logs.mdf.formula import FUNCTIONS, FormulaError, parse
 
 X = 6.0
 

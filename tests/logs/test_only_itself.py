@@ -14,7 +14,7 @@ from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
 from breakaway.errors import LogError
-from breakaway.logs import read_log
+from breakaway.measure.logs import read_log
 
 T_S = np.arange(50) / 100.0
 FORCE_N = np.ones(50)

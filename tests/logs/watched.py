@@ -22,7 +22,7 @@ FREE_MEMORY = ("/proc/meminfo", "/proc/self/cgroup", "/sys/fs/cgroup/")
 def ours(path: Path) -> None:
     """Read a file as we do."""
     from breakaway.errors import LogError
-    from breakaway.logs import read_log
+    from breakaway.measure.logs import read_log
 
     try:
         print(f"{path.name}: {read_log(path)['force_n'][6]:.6g} N")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from breakaway.plots.comparison import JUMP_FLOOR_M, Cloud, plot_scatter
-from breakaway.scenario import Gentleness
+from breakaway.model.scenario import Gentleness
+from breakaway.show.plots.comparison import JUMP_FLOOR_M, Cloud, plot_scatter
 
 GENTLE = Gentleness(peak_over_breakaway_max=1.5, jump_max_m=5e-4, release_velocity_max_m_per_s=0.3)
 STRICT = Gentleness(

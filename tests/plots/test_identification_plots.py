@@ -12,20 +12,20 @@ from matplotlib.figure import Figure
 from scipy.stats import chi2
 
 from breakaway.errors import LogError
-from breakaway.identification.comparison import compare_laws
-from breakaway.identification.friction import (
+from breakaway.measure.identification.comparison import compare_laws
+from breakaway.measure.identification.friction import (
     measured_friction,
     simulated_friction,
     steady_friction,
 )
-from breakaway.identification.identify import identify
-from breakaway.identification.laws import SHARED, Law
-from breakaway.identification.record import RunSettings, core_record, measured_rows
-from breakaway.identification.result import Identification
-from breakaway.logs import read_log
-from breakaway.logs.log import Log
-from breakaway.plots.friction import plot_friction_velocity, plot_hysteresis
-from breakaway.plots.identification import (
+from breakaway.measure.identification.identify import identify
+from breakaway.measure.identification.laws import SHARED, Law
+from breakaway.measure.identification.record import RunSettings, core_record, measured_rows
+from breakaway.measure.identification.result import Identification
+from breakaway.measure.logs import read_log
+from breakaway.measure.logs.log import Log
+from breakaway.show.plots.friction import plot_friction_velocity, plot_hysteresis
+from breakaway.show.plots.identification import (
     plot_drift,
     plot_fit,
     plot_laws,
@@ -33,7 +33,7 @@ from breakaway.plots.identification import (
     plot_profiles,
     plot_residual,
 )
-from breakaway.plots.style import COLORS
+from breakaway.show.plots.style import COLORS
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 TRUE = {

@@ -9,9 +9,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import breakaway as bk
-from breakaway.plots.run import BINS, plot_run
-from breakaway.plots.style import house_style, save_figure, scaled
-from breakaway.scenario.population import LAWS
+from breakaway.model.scenario.population import LAWS
+from breakaway.show.plots.run import BINS, plot_run
+from breakaway.show.plots.style import house_style, save_figure, scaled
 
 BASE = bk.load_scenario("paper_as_computed")
 

@@ -15,18 +15,18 @@ import pytest
 
 from breakaway._core import __version__
 from breakaway.errors import OutputError
-from breakaway.identification.cascade import Cascade
-from breakaway.identification.comparison import compare_laws
-from breakaway.identification.events import find_breakaway_events
-from breakaway.identification.identify import identify
-from breakaway.identification.laws import SHARED, Law
-from breakaway.identification.record import RunSettings, core_record, measured_rows
-from breakaway.identification.uncertainty import Posterior
-from breakaway.identification.verdicts import stiction_peak
-from breakaway.logs import read_log
-from breakaway.logs.log import Log
-from breakaway.plots.identification import words_and_unit
-from breakaway.report.identification import (
+from breakaway.measure.identification.cascade import Cascade
+from breakaway.measure.identification.comparison import compare_laws
+from breakaway.measure.identification.events import find_breakaway_events
+from breakaway.measure.identification.identify import identify
+from breakaway.measure.identification.laws import SHARED, Law
+from breakaway.measure.identification.record import RunSettings, core_record, measured_rows
+from breakaway.measure.identification.uncertainty import Posterior
+from breakaway.measure.identification.verdicts import stiction_peak
+from breakaway.measure.logs import read_log
+from breakaway.measure.logs.log import Log
+from breakaway.show.plots.identification import words_and_unit
+from breakaway.show.report.identification import (
     identification_report,
     save_identification_report,
     uncertain,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from breakaway.reproduction.runs import simulate_all
+from breakaway.ask.reproduction.runs import simulate_all
 
 
 @pytest.fixture(scope="session")

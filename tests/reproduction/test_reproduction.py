@@ -12,11 +12,11 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from breakaway.ask.reproduction.report import reproduce
+from breakaway.ask.reproduction.rows import printed_row
+from breakaway.ask.reproduction.survey import DisturbanceRange
+from breakaway.ask.reproduction.tables import TABLE_2, table_2
 from breakaway.errors import OutputError
-from breakaway.report.reproduction import reproduce
-from breakaway.reproduction.rows import printed_row
-from breakaway.reproduction.survey import DisturbanceRange
-from breakaway.reproduction.tables import TABLE_2, table_2
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +24,7 @@ def out(tmp_path_factory, simulated):
     folder = tmp_path_factory.mktemp("reproduction")
     runs, _ = simulated
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("breakaway.report.reproduction.simulate_all", lambda *_: runs)
+        patch.setattr("breakaway.ask.reproduction.report.simulate_all", lambda *_: runs)
         done = reproduce(folder)
     assert done.report_path == folder / "report.html"
     return folder
@@ -199,7 +199,7 @@ def test_an_interrupted_reproduction_leaves_nothing_behind(tmp_path, monkeypatch
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("breakaway.report.reproduction.simulate_all", interrupted)
+    monkeypatch.setattr("breakaway.ask.reproduction.report.simulate_all", interrupted)
     with pytest.raises(KeyboardInterrupt):
         reproduce(tmp_path / "out")
     assert not (tmp_path / "out").exists()

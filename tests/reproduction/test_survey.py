@@ -12,10 +12,8 @@ import pytest
 from scipy.stats import binomtest
 
 import breakaway as bk
-from breakaway.cli.reproduce import reproduce as reproduce_command
-from breakaway.errors import OutputError, StudyError
-from breakaway.report.reproduction import reproduce
-from breakaway.reproduction.survey import (
+from breakaway.ask.reproduction.report import reproduce
+from breakaway.ask.reproduction.survey import (
     CONTROLS,
     FULL_LEVELS,
     QUICK_LEVELS,
@@ -24,6 +22,8 @@ from breakaway.reproduction.survey import (
     disturbance_range,
     read_survey,
 )
+from breakaway.cli.reproduce import reproduce as reproduce_command
+from breakaway.errors import OutputError, StudyError
 
 SMALL = FullSurvey(levels=(0.0, 0.05, 0.5), seeds=6)
 
@@ -119,7 +119,7 @@ def test_a_full_disk_tells_how_to_go_on(tmp_path, monkeypatch):
     def full(path, _):
         raise OutputError(f"{path}: can not be written: No space left on device; make room")
 
-    monkeypatch.setattr("breakaway.studies.pieces.write_inside", full)
+    monkeypatch.setattr("breakaway.ask.studies.pieces.write_inside", full)
     with pytest.raises(OutputError, match="finished parts stay: resume it to go on"):
         SMALL.run(tmp_path / "figure_10")
 
@@ -153,7 +153,7 @@ def test_the_report_takes_the_full_survey(tmp_path, monkeypatch, simulated):
     few = FullSurvey(levels=(0.0, 0.05, 0.085, 0.125), seeds=4)
     runs, _ = simulated
     monkeypatch.setattr(
-        "breakaway.report.reproduction.simulate_all",
+        "breakaway.ask.reproduction.report.simulate_all",
         lambda _, ranges: dataclasses.replace(runs, ranges=ranges),
     )
     told: list[str] = []
@@ -181,7 +181,7 @@ def test_the_command_goes_in_full_and_tells_how_to_go_on(tmp_path, monkeypatch, 
         progress("under way")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("breakaway.report.reproduction.reproduce", interrupted)
+    monkeypatch.setattr("breakaway.ask.reproduction.report.reproduce", interrupted)
     with pytest.raises(KeyboardInterrupt):
         reproduce_command(out, full=True)
     assert asked[0].study("without_vibration").runs == 10_000

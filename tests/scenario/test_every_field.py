@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import breakaway as bk
-from breakaway.text import shown
+from breakaway.base.text import shown
 
 NASTY = [
     None,

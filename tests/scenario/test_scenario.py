@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import breakaway as bk
-from breakaway.scenario import parse_scenario, scenario_toml
+from breakaway.model.scenario import parse_scenario, scenario_toml
 
 GIVEN = bk.Gains(kp_n_per_m=1e6, ki_n_per_m_s=1e8, kd_n_s_per_m=2500.0)
 PULSES = bk.FmPulses(error_full_scale_m=1e-3, pulse_width_s=2e-3)

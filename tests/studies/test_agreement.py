@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 import breakaway as bk
+from breakaway.ask.studies import load_study, open_study, run_study
+from breakaway.ask.studies.agreement import bisected, narrowed
+from breakaway.ask.studies.agreement_study import joint_under
+from breakaway.ask.studies.files import parse_study
+from breakaway.ask.studies.running import plan_of
+from breakaway.ask.studies.statistics import mcnemar
+from breakaway.ask.studies.verdicts import compared, compared_shares, direction_of, verdict_of
 from breakaway.cli.app import app
 from breakaway.errors import StudyError
-from breakaway.plots.study import plot_agreement
-from breakaway.plots.style import COLORS
-from breakaway.studies import load_study, open_study, run_study
-from breakaway.studies.agreement import bisected, narrowed
-from breakaway.studies.agreement_study import joint_under
-from breakaway.studies.files import parse_study
-from breakaway.studies.running import plan_of
-from breakaway.studies.statistics import mcnemar
-from breakaway.studies.verdicts import compared, compared_shares, direction_of, verdict_of
+from breakaway.show.plots.study import plot_agreement
+from breakaway.show.plots.style import COLORS
 
 LAWS = ["lugre", "elasto_plastic", "gms", "coulomb_stiction"]
 LENGTH_M = 0.002
@@ -61,7 +61,7 @@ def short():
 def no_figures(monkeypatch, request):
     """Leave figures out, which take longer than the studies."""
     if request.node.name != "test_the_command_shows_it":
-        monkeypatch.setattr("breakaway.studies.running._save", lambda *_: None)
+        monkeypatch.setattr("breakaway.ask.studies.running._save", lambda *_: None)
 
 
 def study_of(scenario, runs=1, agreement=None, variants=FORCES, **values):

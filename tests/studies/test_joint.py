@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import breakaway as bk
+from breakaway.ask.studies import load_study, run_study
+from breakaway.ask.studies.files import parse_study
 from breakaway.errors import ScenarioError, StudyError
-from breakaway.identification import JointFile, identify
-from breakaway.logs import Log
-from breakaway.scenario.distribution import Samples
-from breakaway.studies import load_study, run_study
-from breakaway.studies.files import parse_study
+from breakaway.measure.identification import JointFile, identify
+from breakaway.measure.logs import Log
+from breakaway.model.scenario.distribution import Samples
 
 PATHS = {"joint.coulomb_n", "joint.viscous_n_s_per_m"}
 TEXT = """
@@ -61,7 +61,7 @@ def folder(tmp_path: Path, quick: bk.Scenario, joint: JointFile) -> Path:
 
 @pytest.fixture(autouse=True)
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("breakaway.studies.running._save", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.studies.running._save", lambda *_: None)
 
 
 def load(folder: Path, text: str) -> Any:

@@ -11,12 +11,12 @@ from scipy.stats import norm
 
 import breakaway as bk
 from breakaway._core import OUTCOMES
-from breakaway.batch import simulate_many
+from breakaway.ask.studies import open_study, run_study
+from breakaway.ask.studies.files import parse_study
+from breakaway.ask.studies.robustness import RobustnessPlan, largest_true
+from breakaway.ask.studies.statistics import clopper_pearson
 from breakaway.errors import StudyError
-from breakaway.studies import open_study, run_study
-from breakaway.studies.files import parse_study
-from breakaway.studies.robustness import RobustnessPlan, largest_true
-from breakaway.studies.statistics import clopper_pearson
+from breakaway.run.batch import simulate_many
 
 NORMAL = {"distribution": "normal", "mean": 550.0, "std": 40.0}
 SPREAD = {"distribution": "uniform", "low": 540.0, "high": 560.0}
@@ -29,7 +29,7 @@ def study_of(kind, scenario, **values):
 @pytest.fixture(autouse=True)
 def no_figures(monkeypatch):
     """Leave figures out; tests/cli and tests/plots draw them."""
-    monkeypatch.setattr("breakaway.studies.running._save", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.studies.running._save", lambda *_: None)
 
 
 # Sweep
@@ -261,7 +261,7 @@ def test_indices_of_a_known_function(pushed):
         "part.mass_kg": {"distribution": "uniform", "low": 1.0, "high": 2.0},
     }
     study = study_of("sensitivity", pushed, runs=512, vary=vary, metrics=["peak_force_n"])
-    from breakaway.studies.sensitivity import SensitivityPlan
+    from breakaway.ask.studies.sensitivity import SensitivityPlan
 
     plan = SensitivityPlan(study)
 

@@ -8,8 +8,8 @@ import pytest
 SCRIPT = """
 import sys, tempfile
 import breakaway as bk
-from breakaway.studies import run_study
-from breakaway.studies.files import parse_study
+from breakaway.ask.studies import run_study
+from breakaway.ask.studies.files import parse_study
 scenario = bk.load_scenario("paper_as_computed").with_({"timing.duration_s": 1e-4})
 study = parse_study({
     "kind": "sweep", "scenario": scenario, "runs": int(sys.argv[1]), "metrics": ["peak_force_n"],

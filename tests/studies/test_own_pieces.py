@@ -9,11 +9,11 @@ import pyarrow as arrow
 import pyarrow.parquet as parquet
 import pytest
 
+from breakaway.ask.studies import open_study, run_study
+from breakaway.ask.studies.files import parse_study
+from breakaway.ask.studies.manifest import FORMAT, identity_of
+from breakaway.ask.studies.pieces import DIGESTS, Pieces, digest_of
 from breakaway.errors import StudyError
-from breakaway.studies import open_study, run_study
-from breakaway.studies.files import parse_study
-from breakaway.studies.manifest import FORMAT, identity_of
-from breakaway.studies.pieces import DIGESTS, Pieces, digest_of
 
 PART = "parts/part-000001.parquet"
 
@@ -37,7 +37,7 @@ def asked(quick):
 @pytest.fixture(autouse=True)
 def no_figures(monkeypatch):
     """Leave figures out, which take longer than the studies."""
-    monkeypatch.setattr("breakaway.studies.running._save", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.studies.running._save", lambda *_: None)
 
 
 @pytest.fixture
@@ -205,7 +205,7 @@ def test_a_digest_is_there_before_its_file(tmp_path, monkeypatch):
     def killed(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("breakaway.studies.pieces.write_inside", killed)
+    monkeypatch.setattr("breakaway.ask.studies.pieces.write_inside", killed)
     with pytest.raises(KeyboardInterrupt):
         Pieces(tmp_path, "identity").write("a", b"content")
     again = Pieces(tmp_path, "identity")

@@ -12,16 +12,16 @@ from pathlib import Path
 
 import pytest
 
+from breakaway.ask.studies import load_study, open_study, run_study
+from breakaway.ask.studies.files import parse_study
+from breakaway.ask.studies.manifest import identity_of
+from breakaway.ask.studies.pieces import DIGESTS, Pieces
+from breakaway.ask.studies.running import plan_of
 from breakaway.errors import BreakawayError, OutputError, StudyError
-from breakaway.studies import load_study, open_study, run_study
-from breakaway.studies.files import parse_study
-from breakaway.studies.manifest import identity_of
-from breakaway.studies.pieces import DIGESTS, Pieces
-from breakaway.studies.running import plan_of
 
 SCRIPT = """
 import resource, sys
-from breakaway.studies import load_study, run_study
+from breakaway.ask.studies import load_study, run_study
 full_at = int(sys.argv[3])
 def progress(at):
     if full_at and at.runs_done >= full_at:
@@ -65,7 +65,7 @@ def whole(robustness, tmp_path_factory):
 @pytest.fixture(autouse=True)
 def no_figures(monkeypatch):
     """Leave figures out, which take longer than the studies; processes of their own draw them."""
-    monkeypatch.setattr("breakaway.studies.running._save", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.studies.running._save", lambda *_: None)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -171,7 +171,7 @@ def test_ctrl_c_keeps_finished_parts(robustness, whole, tmp_path):
 def test_a_finished_study_computes_nothing(robustness, whole, tmp_path, monkeypatch):
     folder = shutil.copytree(whole, tmp_path / "done")
     monkeypatch.setattr(
-        "breakaway.studies.points.simulate_many", lambda *_, **__: pytest.fail("simulated")
+        "breakaway.ask.studies.points.simulate_many", lambda *_, **__: pytest.fail("simulated")
     )
     run_study(robustness, folder, resume=True)
     assert_same(folder, whole)
@@ -313,7 +313,7 @@ def test_a_folder_that_can_not_take_the_manifest_is_not_left_behind(
     def full(*_):
         raise OutputError("full")
 
-    monkeypatch.setattr("breakaway.studies.folder.write_inside", full)
+    monkeypatch.setattr("breakaway.ask.studies.folder.write_inside", full)
     with pytest.raises(OutputError, match="full"):
         run_study(robustness, tmp_path / "new")
     assert list(tmp_path.iterdir()) == []

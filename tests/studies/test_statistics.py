@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, binomtest
 
-from breakaway.studies.statistics import (
+from breakaway.ask.studies.statistics import (
     clopper_pearson,
     mcnemar,
     median_interval,

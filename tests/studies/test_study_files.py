@@ -7,11 +7,11 @@ import pytest
 import tomli_w
 
 import breakaway as bk
+from breakaway.ask.studies import load_study, run_study
+from breakaway.ask.studies.files import parse_study
+from breakaway.ask.studies.points import Point
+from breakaway.ask.studies.running import plan_of
 from breakaway.errors import StudyError
-from breakaway.studies import load_study, run_study
-from breakaway.studies.files import parse_study
-from breakaway.studies.points import Point
-from breakaway.studies.running import plan_of
 
 SWEEP = """
 kind = "sweep"
@@ -204,7 +204,7 @@ def test_draws_out_of_range_are_found_before_anything_runs(tmp_path, pushed, tab
 
 def test_an_invalid_run_is_named_by_its_own_number(monkeypatch):
     """Runs are checked in slices; the number is that of the run and not of its place there."""
-    monkeypatch.setattr("breakaway.studies.points.CHECKED_TOGETHER", 10)
+    monkeypatch.setattr("breakaway.ask.studies.points.CHECKED_TOGETHER", 10)
     scenario = bk.load_scenario("paper_as_computed")
     mass_kg = np.ones(40)
     mass_kg[37] = -1.0

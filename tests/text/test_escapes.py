@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from matplotlib.figure import Figure
 
-from breakaway import text
-from breakaway.plots.style import house_style
+from breakaway.base import text
+from breakaway.show.plots.style import house_style
 
 MARKS = [
     *("*/", "/*", "//", "??", "??/", "[", "]", "(", ")", "{", "}", "é", "摩", "1", "a", " "),

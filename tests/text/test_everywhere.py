@@ -24,11 +24,11 @@ from pydantic import TypeAdapter, ValidationError
 from typer.testing import CliRunner
 
 import breakaway as bk
-from breakaway import text
+from breakaway.base import text
 from breakaway.cli.app import app
-from breakaway.plots.design import plot_bode
-from breakaway.plots.style import save_figure
-from breakaway.scenario.model import Model, Name
+from breakaway.model.scenario.model import Model, Name
+from breakaway.show.plots.design import plot_bode
+from breakaway.show.plots.style import save_figure
 
 CODE = '*/ int marker; /* ??/ "; marker \\'
 MARKUP = "=1+1 <marker a='b'> ]]>$\\marker{ $${m}[bold]m[/] | m | `m` *m* &amp; µ"

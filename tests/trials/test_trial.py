@@ -9,10 +9,10 @@ import pytest
 
 import breakaway as bk
 from breakaway.errors import ScenarioError, StudyError
-from breakaway.scenario.files import preset_names
-from breakaway.scenario.population import LAWS
-from breakaway.trials import TRIAL_METRICS, part_columns, scenario_of
-from breakaway.trials.parts import steps_per_period
+from breakaway.model.scenario.files import preset_names
+from breakaway.model.scenario.population import LAWS
+from breakaway.run.trials import TRIAL_METRICS, part_columns, scenario_of
+from breakaway.run.trials.parts import steps_per_period
 
 SHORT = bk.Uniform(low=0.001, high=0.002)
 

@@ -49,7 +49,7 @@ def feed(parts: bk.PartPopulation) -> Callable[..., bk.Tuning]:
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures out, which take longer than the trials."""
-    monkeypatch.setattr("breakaway.tuning.writing._draw", lambda *_: None)
+    monkeypatch.setattr("breakaway.ask.tuning.writing._draw", lambda *_: None)
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import breakaway as bk
-from breakaway.tuning import Evaluation, Score
-from breakaway.tuning.evaluation import (
+from breakaway.ask.tuning import Evaluation, Score
+from breakaway.ask.tuning.evaluation import (
     is_feasible,
     pareto_front,
     recommended,

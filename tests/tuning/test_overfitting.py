@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import breakaway as bk
-from breakaway.studies.statistics import clopper_pearson
-from breakaway.tuning.scores import Score, score_kind
-from breakaway.tuning.summary import verdict
+from breakaway.ask.studies.statistics import clopper_pearson
+from breakaway.ask.tuning.scores import Score, score_kind
+from breakaway.ask.tuning.summary import verdict
 
 
 @pytest.mark.usefixtures("no_figures")

@@ -18,7 +18,7 @@ import sys, tomllib
 import breakaway as bk
 with open(sys.argv[1], "rb") as file:
     tuning = bk.Tuning.parse(tomllib.load(file))
-import breakaway.tuning.writing as writing
+import breakaway.ask.tuning.writing as writing
 writing._draw = lambda *_: None
 bk.tune(tuning, sys.argv[2], resume=True, threads=1, notice=lambda said: print(said))
 """
@@ -45,7 +45,7 @@ def whole(asked, tmp_path_factory):
     """Give the folder of the tuning that nothing interrupted."""
     folder = tmp_path_factory.mktemp("tunings") / "whole"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("breakaway.tuning.writing._draw", lambda *_: None)
+        patch.setattr("breakaway.ask.tuning.writing._draw", lambda *_: None)
         bk.tune(asked, folder, threads=2)
     return folder
 
@@ -149,7 +149,7 @@ def test_more_trials_may_be_asked_for(asked, whole, tmp_path):
 def test_a_finished_tuning_computes_nothing(asked, whole, tmp_path, monkeypatch):
     folder = shutil.copytree(whole, tmp_path / "done")
     monkeypatch.setattr(
-        "breakaway.tuning.evaluation.run_trial", lambda *_, **__: pytest.fail("simulated")
+        "breakaway.ask.tuning.evaluation.run_trial", lambda *_, **__: pytest.fail("simulated")
     )
     bk.tune(asked, folder, resume=True)
     assert contents(folder) == contents(whole)
@@ -226,7 +226,7 @@ def test_another_tuning_is_refused(asked, whole):
 
 
 def test_a_study_is_no_tuning(tmp_path):
-    from breakaway.studies import SweepStudy, run_study
+    from breakaway.ask.studies import SweepStudy, run_study
 
     study = SweepStudy(
         scenario="paper_as_computed",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import breakaway as bk
-from breakaway.tuning.scores import METRICS, Score, quantile_score, score_kind
+from breakaway.ask.tuning.scores import METRICS, Score, quantile_score, score_kind
 
 
 @pytest.mark.parametrize("metric", METRICS)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from breakaway.plots.tuning import plot_history, plot_pareto, plot_slices
+from breakaway.show.plots.tuning import plot_history, plot_pareto, plot_slices
 
 NAMES = {"strict_share": False, "median_time_to_release_s": True, "p99_impacts": True}
 SPANS = {"controller.speed_m_per_s": (0.01, 0.05, True), "actuator.gap_m": (0.0, 1e-3, False)}

@@ -15,8 +15,8 @@ from breakaway.cli.show import Sheet, busy, say, say_aside, say_json
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
-    from breakaway.comparison import Comparison
-    from breakaway.studies import StudyProgress
+    from breakaway.ask.comparison import Comparison
+    from breakaway.ask.studies import StudyProgress
 
 Row = Mapping[str, Any]
 
@@ -73,7 +73,7 @@ def compare(
     comparison that was interrupted goes on with --resume and computes nothing
     twice.
     """
-    from breakaway.comparison import compare_methods
+    from breakaway.ask.comparison import compare_methods
 
     named = [name.strip() for given in laws for name in given.split(",")] if laws else None
     try:

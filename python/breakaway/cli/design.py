@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         SampledPid,
         Stability,
     )
-    from breakaway.scenario import Gains, PidSettings, PolePlacement, Scenario
+    from breakaway.model.scenario import Gains, PidSettings, PolePlacement, Scenario
 
 NOT_STABLE = 4
 """Exit code where --require-stable is not met."""
@@ -107,12 +107,12 @@ def design(
     With --out, the folder receives design.json and, for each gain set, Bode
     plot, Nyquist plot, root locus and limit cycle as PNG and SVG.
     """
-    from breakaway.scenario import load_scenario
+    from breakaway.model.scenario import load_scenario
 
     asked = load_scenario(scenario)
     if out is not None:  # before the work, not after it
-        from breakaway.output import claim
-        from breakaway.ownership import DESIGN
+        from breakaway.base.output import claim
+        from breakaway.base.ownership import DESIGN
 
         claim(out, DESIGN, [DESIGN.marker])
     with busy("judging the loops ..."):
@@ -131,14 +131,14 @@ def design(
 
 
 def _gain_sets(scenario: Scenario) -> list[Asked]:
-    from breakaway.scenario.controller import pids
+    from breakaway.model.scenario.controller import pids
 
     return [Asked(ROLES[path], pid.gains, pid) for path, pid in pids(scenario.controller).items()]
 
 
 def _judge(scenario: Scenario, asked: Asked) -> Judged:
     from breakaway.design import PidGains, pole_placement, sampled_loops, sampled_pid, stability
-    from breakaway.scenario import Gains
+    from breakaway.model.scenario import Gains
 
     joint, mass_kg, gains = scenario.joint, scenario.part.mass_kg, asked.gains
     designed = None
@@ -158,7 +158,7 @@ def _limit_cycle(scenario: Scenario, pid: SampledPid) -> LimitCycleComparison | 
     """Predict the limit cycle, and compare it with a run of the scenario without disturbance."""
     from breakaway.design import compare_limit_cycle
     from breakaway.design.limit_cycle import oscillator_of
-    from breakaway.simulation import simulate
+    from breakaway.run.simulation import simulate
 
     joint, mass_kg = scenario.joint, scenario.part.mass_kg
     oscillator = oscillator_of(pid, joint, mass_kg)
@@ -419,9 +419,9 @@ def _write(
     """Write design.json and the figures, all of them or none."""
     from json import dumps
 
-    from breakaway.output import output_folder
-    from breakaway.ownership import DESIGN
-    from breakaway.plots.style import save_figure
+    from breakaway.base.output import output_folder
+    from breakaway.base.ownership import DESIGN
+    from breakaway.show.plots.style import save_figure
 
     with output_folder(folder, DESIGN) as staging:
         text = dumps(plain(content), indent=2, allow_nan=False) + "\n"
@@ -436,7 +436,12 @@ def _write(
 
 
 def _figures(scenario: Scenario, one: Judged) -> Iterator[tuple[str, Any]]:
-    from breakaway.plots.design import plot_bode, plot_limit_cycle, plot_nyquist, plot_root_locus
+    from breakaway.show.plots.design import (
+        plot_bode,
+        plot_limit_cycle,
+        plot_nyquist,
+        plot_root_locus,
+    )
 
     about = f"{scenario.name}: {one.role}"
     yield "bode", plot_bode(one.loops, f"{about}, open loop")

@@ -12,7 +12,7 @@ from breakaway.cli.quantity import memory_bytes, show
 from breakaway.cli.show import Sheet, busy, say, say_json
 
 if TYPE_CHECKING:
-    from breakaway.identification import BreakawayReport, Population
+    from breakaway.measure.identification import BreakawayReport, Population
 
 
 def events(
@@ -63,8 +63,8 @@ def events(
     A log that begins moving is refused for breakaway, with the reason. The
     force is taken as it was measured: inertia is not subtracted.
     """
-    from breakaway.identification import find_breakaway_events, fit_population
-    from breakaway.logs import read_log
+    from breakaway.measure.identification import find_breakaway_events, fit_population
+    from breakaway.measure.logs import read_log
 
     reports, hints = [], []
     with busy("looking for breakaway ..."):

@@ -57,7 +57,7 @@ def export_c(
     run time. Kinds and options of the scenario are fixed in it.
     """
     from breakaway.export import export_c as write
-    from breakaway.scenario import load_scenario
+    from breakaway.model.scenario import load_scenario
 
     asked = load_scenario(scenario)
     with busy("recording the step ..."):
@@ -92,7 +92,7 @@ def export_fmu(
     clang on PATH, or what CC names; without one, the unit holds sources only.
     """
     from breakaway.export import export_fmu as write
-    from breakaway.scenario import load_scenario
+    from breakaway.model.scenario import load_scenario
 
     asked = load_scenario(scenario)
     with busy("recording the step ..."):

@@ -12,7 +12,7 @@ from breakaway.cli.show import Sheet
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from breakaway.identification import (
+    from breakaway.measure.identification import (
         AsymmetricFit,
         ComparedLaw,
         Identification,
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
         Prediction,
         SymmetricFit,
     )
-    from breakaway.logs import Log
+    from breakaway.measure.logs import Log
 
 
 SYMBOLS = {
@@ -72,7 +72,7 @@ def law_tables(
     found: Identification, compared: Sequence[ComparedLaw], held_out: Prediction | None
 ) -> list[Sheet | str]:
     """Give the tables of a law that was fitted by simulation."""
-    from breakaway.identification.verdicts import stiction_peak
+    from breakaway.measure.identification.verdicts import stiction_peak
 
     parts: list[Sheet | str] = []
     if compared:

@@ -15,13 +15,13 @@ from breakaway.cli.quantity import memory_bytes
 from breakaway.cli.show import busy, say, say_json
 
 if TYPE_CHECKING:
-    from breakaway.identification import Identification, JointFile
-    from breakaway.identification.comparison import ComparedLaw
-    from breakaway.logs import Log
+    from breakaway.measure.identification import Identification, JointFile
+    from breakaway.measure.identification.comparison import ComparedLaw
+    from breakaway.measure.logs import Log
 
 
 class LogFormat(StrEnum):
-    """Formats of `breakaway.logs.FORMATS`, named here so that the command starts without them."""
+    """The formats of `breakaway.measure.logs`; here, so that the command starts without them."""
 
     CSV = "csv"
     PARQUET = "parquet"
@@ -34,7 +34,7 @@ class LogFormat(StrEnum):
 
 
 class LawChoice(StrEnum):
-    """Laws of `breakaway.identification.LAWS`, and all of them, compared."""
+    """Laws of `breakaway.measure.identification.LAWS`, and all of them, compared."""
 
     COULOMB = "coulomb"
     STRIBECK = "stribeck"
@@ -161,7 +161,7 @@ def identify(
     With --law: by simulation of that law, with intervals, and with what the
     log can not tell. Ctrl-C ends a fit and shows the best so far.
     """
-    from breakaway.logs import read_log
+    from breakaway.measure.logs import read_log
 
     if out is not None:
         _check_target(log, out)
@@ -216,8 +216,8 @@ def _regress(
     page: Path | None,
     json: bool,
 ) -> None:
-    from breakaway.identification import JointFile, identify_inertia_friction
-    from breakaway.identification import identify as fit_law
+    from breakaway.measure.identification import JointFile, identify_inertia_friction
+    from breakaway.measure.identification import identify as fit_law
 
     settings: dict[str, Any] = {"lowpass_hz": lowpass_hz, "decimation": decimation}
     given = {name: value for name, value in settings.items() if value is not None}
@@ -246,9 +246,9 @@ def _fit(
     json: bool,
 ) -> None:
     from breakaway.errors import LogError
-    from breakaway.identification import JointFile, compare_laws
-    from breakaway.identification import identify as fit_law
-    from breakaway.identification.result import as_dict
+    from breakaway.measure.identification import JointFile, compare_laws
+    from breakaway.measure.identification import identify as fit_law
+    from breakaway.measure.identification.result import as_dict
 
     compared: tuple[ComparedLaw, ...] = ()
     if law is LawChoice.COMPARE:
@@ -290,7 +290,7 @@ def _fit(
 
 
 def _write_report(path: Path, found: Identification, **parts: Any) -> None:  # noqa: ANN401
-    from breakaway.report.identification import save_identification_report
+    from breakaway.show.report.identification import save_identification_report
 
     with busy("writing the report ..."):
         save_identification_report(path, found, **parts)
@@ -327,7 +327,7 @@ def _page(log: Path, out: Path | None) -> Path:
 
 
 def _is_report(page: Path) -> bool:
-    from breakaway.reading import open_regular
+    from breakaway.base.reading import open_regular
 
     try:
         with open_regular(page) as file:
@@ -340,11 +340,11 @@ def _controller(path: Path | None) -> Any:  # noqa: ANN401 - a Cascade or a Pid
     """Read the controller of a rig: a cascade, or a PID whose gains are given."""
     if path is None:
         return None
+    from breakaway.base.reading import table_of, text_of
     from breakaway.errors import ScenarioError
-    from breakaway.identification import Cascade
-    from breakaway.reading import table_of, text_of
-    from breakaway.scenario import Pid
-    from breakaway.scenario.files import parse_toml
+    from breakaway.measure.identification import Cascade
+    from breakaway.model.scenario import Pid
+    from breakaway.model.scenario.files import parse_toml
 
     text = text_of(path, ScenarioError)
     kind = table_of(text, path, ScenarioError).get("kind")
@@ -388,9 +388,9 @@ def _number(text: str, option: str) -> float:
 
 def _check_target(log: Path, out: Path) -> None:
     """Refuse to write over the log, or over anything but another joint file."""
+    from breakaway.base.output import refuse_to_overwrite
     from breakaway.errors import OutputError, ScenarioError
-    from breakaway.identification import JointFile
-    from breakaway.output import refuse_to_overwrite
+    from breakaway.measure.identification import JointFile
 
     refuse_to_overwrite(log, out)
     if not out.parent.is_dir():

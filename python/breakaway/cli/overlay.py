@@ -10,9 +10,9 @@ from breakaway.cli.quantity import show
 from breakaway.cli.show import Sheet
 from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
-from breakaway.identification.joint_file import JointFile
-from breakaway.resolution import resolve
-from breakaway.scenario import PolePlacement, Scenario, gain_sets
+from breakaway.measure.identification.joint_file import JointFile
+from breakaway.model.scenario import PolePlacement, Scenario, gain_sets
+from breakaway.run.resolution import resolve
 
 WEIGHT = "left out, so the weight of the identified mass"
 

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from breakaway.base.text import visible
 from breakaway.cli.interrupts import raise_if_interrupted
-from breakaway.text import visible
 
 if TYPE_CHECKING:
-    from breakaway.studies import StudyProgress
+    from breakaway.ask.studies import StudyProgress
 
 
 @contextmanager
@@ -82,7 +82,7 @@ def progress_in_words(at: StudyProgress, elapsed_s: float) -> str:
 
     Examples
     --------
-    >>> from breakaway.studies import StudyProgress
+    >>> from breakaway.ask.studies import StudyProgress
     >>> at = StudyProgress(runs_done=3000, runs_found=1000, runs_max=9000, doing="grid")
     >>> progress_in_words(at, 20.0)
     '3000 of 9000 runs, 100 runs/s, 1 min 00 s left'

@@ -12,7 +12,7 @@ from breakaway.cli.show import Sheet, say, say_aside
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
-    from breakaway.report.reproduction import Reproduction
+    from breakaway.ask.reproduction.report import Reproduction
 
 
 def reproduce(
@@ -30,7 +30,7 @@ def reproduce(
     of figure 10 are kept in DIR/figure_10 as they finish: after Ctrl-C the same
     command goes on where it was.
     """
-    from breakaway.report.reproduction import reproduce as reproduce_paper
+    from breakaway.ask.reproduction.report import reproduce as reproduce_paper
 
     done = _in_full(out) if full else reproduce_paper(out, say_aside)
     header = [str(name) for name in done.header]
@@ -41,8 +41,8 @@ def reproduce(
 
 
 def _in_full(out: Path) -> Reproduction:
-    from breakaway.report.reproduction import reproduce as reproduce_paper
-    from breakaway.reproduction.survey import FullSurvey
+    from breakaway.ask.reproduction.report import reproduce as reproduce_paper
+    from breakaway.ask.reproduction.survey import FullSurvey
 
     try:
         with shown_progress() as report:

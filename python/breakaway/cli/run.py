@@ -13,8 +13,8 @@ from breakaway.cli.show import Sheet, busy, say, say_json
 
 if TYPE_CHECKING:
     from breakaway.cli.overlay import Overlay
-    from breakaway.run import Run
-    from breakaway.scenario import Scenario
+    from breakaway.model.scenario import Scenario
+    from breakaway.run.finished import Run
 
 LIMIT_OF = {
     "peak_force_n": "peak_force_max_n",
@@ -55,11 +55,11 @@ def run(
     running it gives the same bits), metrics.json, trace.parquet, trace.csv,
     figure.png and figure.svg; none of them where the run is interrupted.
     """
-    from breakaway.scenario import load_scenario
+    from breakaway.model.scenario import load_scenario
 
     asked = load_scenario(scenario)
     if out is not None:
-        from breakaway.output import refuse_to_overwrite
+        from breakaway.base.output import refuse_to_overwrite
 
         refuse_to_overwrite(Path(scenario), out / "scenario.toml")
     if seed is not None:
@@ -84,13 +84,13 @@ def run(
 
 
 def _simulate(scenario: Scenario, out: Path | None) -> tuple[Run, list[Path]]:
-    from breakaway.simulation import simulate
+    from breakaway.run.simulation import simulate
 
     what = f"simulating {show('duration_s', scenario.timing.duration_s)} ..."
     if out is None:
         with busy(what):
             return simulate(scenario), []
-    from breakaway.run_output import written_run
+    from breakaway.show.run_files import written_run
 
     with busy(what), written_run(out) as write:  # a folder that can not be written fails now
         finished = simulate(scenario)
@@ -129,7 +129,7 @@ def _notes(finished: Run, out: Path | None) -> list[str]:
 
 def _warnings(finished: Run) -> Iterator[str]:
     """What a user should know before trusting the figures."""
-    from breakaway.scenario import Gains, gain_sets
+    from breakaway.model.scenario import Gains, gain_sets
 
     scenario, m = finished.scenario, finished.metrics
     limits = scenario.limits
@@ -164,7 +164,7 @@ def _warnings(finished: Run) -> Iterator[str]:
 
 
 def _show_json(finished: Run, files: list[Path], overlay: Overlay | None) -> None:
-    from breakaway.run_output import run_summary
+    from breakaway.show.run_files import run_summary
 
     content = run_summary(finished) | {"files": [str(path) for path in files]}
     if overlay:

@@ -16,7 +16,7 @@ def presets(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
 ) -> None:
     """List the scenarios that come with breakaway."""
-    from breakaway.scenario import load_scenario, preset_names
+    from breakaway.model.scenario import load_scenario, preset_names
 
     found = {name: load_scenario(name).description for name in preset_names()}
     if json:
@@ -34,8 +34,8 @@ def schema(
     ] = None,
 ) -> None:
     """Print the JSON Schema of a scenario, for editors that check and complete TOML."""
-    from breakaway.output import write_atomically
-    from breakaway.scenario import scenario_schema
+    from breakaway.base.output import write_atomically
+    from breakaway.model.scenario import scenario_schema
 
     content = scenario_schema()
     if out is None:
@@ -53,9 +53,9 @@ def init(
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file.")] = False,
 ) -> None:
     """Write a commented scenario to edit: every key with its meaning, unit and valid range."""
-    from breakaway.output import write_atomically
-    from breakaway.scenario import load_scenario
-    from breakaway.scenario.template import scenario_template
+    from breakaway.base.output import write_atomically
+    from breakaway.model.scenario import load_scenario
+    from breakaway.model.scenario.template import scenario_template
 
     values = load_scenario(preset).with_(name=file.stem, description=f"Made from {preset}")
     content = scenario_template(values)

@@ -18,8 +18,8 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+from breakaway.base.text import terminal, visible, visible_lines
 from breakaway.errors import OutputError
-from breakaway.text import terminal, visible, visible_lines
 
 PIPED_WIDTH = 10_000
 """Width, in characters, for output that no terminal shows: lines are never broken there."""

@@ -14,7 +14,7 @@ from breakaway.cli.show import Sheet, say, say_aside, say_json
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
-    from breakaway.studies import StudyResult
+    from breakaway.ask.studies import StudyResult
 
 ROWS_MAX = 40
 """Most rows of a table that are printed; its file has all."""
@@ -45,11 +45,11 @@ def study(
     study.toml, which holds all it takes to run it again. A study that was
     interrupted or killed goes on with --resume and computes nothing twice.
     """
-    from breakaway.studies import load_study, run_study
+    from breakaway.ask.studies import load_study, run_study
 
     asked = load_study(file)
     if out.exists():
-        from breakaway.output import refuse_to_overwrite
+        from breakaway.base.output import refuse_to_overwrite
 
         refuse_to_overwrite(file, out / "study.toml")
     try:

@@ -14,8 +14,8 @@ from breakaway.cli.show import Sheet, say, say_aside, say_json
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
-    from breakaway.studies import StudyProgress
-    from breakaway.tuning import Tuning, TuningProgress
+    from breakaway.ask.studies import StudyProgress
+    from breakaway.ask.tuning import Tuning, TuningProgress
 
 
 def tune(
@@ -41,9 +41,9 @@ def tune(
     for each point of the front, tables (CSV) and figures. A tuning that was
     interrupted or killed goes on with --resume, also with more --trials.
     """
-    from breakaway.output import refuse_to_overwrite
-    from breakaway.tuning import load_tuning
-    from breakaway.tuning import tune as run_tuning
+    from breakaway.ask.tuning import load_tuning
+    from breakaway.ask.tuning import tune as run_tuning
+    from breakaway.base.output import refuse_to_overwrite
 
     asked = load_tuning(file)
     refuse_to_overwrite(file, out / "best.toml")
@@ -83,7 +83,7 @@ def tune(
 
 def _told(progress: Callable[[StudyProgress], None]) -> Callable[[TuningProgress], None]:
     """Tell the best so far beside how far the parts are."""
-    from breakaway.studies import StudyProgress
+    from breakaway.ask.studies import StudyProgress
 
     def tell(at: TuningProgress) -> None:
         best = ", ".join(f"{split_unit(name)[0]} {show(name, v)}" for name, v in at.best.items())
@@ -122,7 +122,7 @@ ON = ("training", "unseen")
 
 def _numbers(asked: Tuning, summary: Mapping[str, Any]) -> Sheet:
     """Give the numbers of the recommended method beside what they were and could be."""
-    from breakaway.tuning.numbers import number_of
+    from breakaway.ask.tuning.numbers import number_of
 
     columns = ["number", "was", "is", "from", "to"]
     sheet = Sheet("", columns, numbers=columns[1:])

@@ -10,10 +10,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from breakaway.base.equality import ByValue
 from breakaway.design.limit_cycle import Oscillator, oscillator_of
 from breakaway.design.loop import SampledPid
 from breakaway.design.stribeck import FrictionLaw, StribeckLaw
-from breakaway.equality import ByValue
 from breakaway.errors import ScenarioError
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ from breakaway.design.margins import Margins, margins
 from breakaway.design.pole_placement import PidGains
 from breakaway.design.stability import LoopStability
 from breakaway.design.stribeck import FrictionLaw, bristles, steepest_fall_velocity, stribeck_slope
-from breakaway.scenario.controller import PidSettings
-from breakaway.scenario.run import Timing
+from breakaway.model.scenario.controller import PidSettings
+from breakaway.model.scenario.run import Timing
 
 if TYPE_CHECKING:
     import control

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 
 from breakaway import _core
+from breakaway.base.output import output_folder
+from breakaway.base.ownership import C_SOURCES
 from breakaway.errors import ScenarioError
 from breakaway.export import c_text
 from breakaway.export.interface import Real, Variable, What
 from breakaway.export.recording import Recording, record
 from breakaway.export.templating import fill
 from breakaway.export.vectors import COLUMNS, STEPS, bits, likely_inputs, reference
-from breakaway.output import output_folder
-from breakaway.ownership import C_SOURCES
-from breakaway.resolution import resolve
-from breakaway.scenario.scenario import Scenario
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.resolution import resolve
 
 TITLES = {"controller": "Controller", "plant": "Plant", "loop": "Loop"}
 """What is exported -> what it is called."""

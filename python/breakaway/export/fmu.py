@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from breakaway import _core
+from breakaway.base.output import write_atomically
+from breakaway.base.text import c_identifier
 from breakaway.errors import OutputError, ScenarioError
 from breakaway.export.c_files import TITLES, c_texts, check_choice, draws
 from breakaway.export.fmi_absent import absent
@@ -21,10 +23,8 @@ from breakaway.export.interface import Variable, What
 from breakaway.export.recording import Recording, record
 from breakaway.export.templating import fill
 from breakaway.export.units import BASE_UNITS
-from breakaway.output import write_atomically
-from breakaway.resolution import resolve
-from breakaway.scenario.scenario import Scenario
-from breakaway.text import c_identifier
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.resolution import resolve
 
 Fmi = Literal["2", "3"]
 """Version of the standard."""

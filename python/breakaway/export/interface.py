@@ -9,8 +9,8 @@ from typing import Any, Literal
 from pydantic import BaseModel
 
 from breakaway.export.units import unit_of
-from breakaway.scenario.model import properties
-from breakaway.scenario.scenario import Scenario
+from breakaway.model.scenario.model import properties
+from breakaway.model.scenario.scenario import Scenario
 
 What = Literal["controller", "plant", "loop"]
 """What of a scenario is exported."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from breakaway.export.vectors import reference
-from breakaway.resolution import resolve
-from breakaway.scenario import load_scenario
-from breakaway.scenario.scenario import Scenario
+from breakaway.model.scenario import load_scenario
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.resolution import resolve
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from typing import Any
 from breakaway import _core
 from breakaway.errors import ScenarioError
 from breakaway.export.interface import Real, Variable, What, flow, parameter, state
-from breakaway.resolution import core_job
-from breakaway.scenario.scenario import Scenario
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.resolution import core_job
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 import jinja2
 
-from breakaway.text import c_comment, markdown, xml
+from breakaway.base.text import c_comment, markdown, xml
 
 
 def fill(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the template wants

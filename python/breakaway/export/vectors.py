@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from breakaway import _core
 from breakaway.export.interface import Real, What
 from breakaway.export.recording import Recording
-from breakaway.resolution import core_job
-from breakaway.scenario.scenario import Scenario
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.resolution import core_job
 
 STEPS = 300
 """Steps of a test program."""

@@ -1,0 +1,144 @@
+"""What a comparison asks: the population, the methods, the friction laws, how many parts."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self, TypeVar
+
+import tomli_w
+from pydantic import Field, model_validator
+
+from breakaway.ask.studies.study import StudyModel
+from breakaway.base.reading import read_toml
+from breakaway.errors import StudyError
+from breakaway.model.scenario.files import load_method, load_population, preset_names
+from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.model import Name
+from breakaway.model.scenario.population import LAWS, Law, PartPopulation
+from breakaway.run.batch.simulation import RUNS_MAX
+
+AnyName = TypeVar("AnyName", bound=str | Path | Method)
+
+KIND = "comparison"
+USUAL_LAWS: tuple[Law, ...] = ("lugre", "elasto_plastic", "gms")
+"""Laws that are compared where none are named."""
+USUAL_RUNS = 10_000
+"""Parts that are tried where no number is given."""
+
+
+class Asked(StudyModel):
+    """A comparison, every number of it: the same of these gives the same bytes."""
+
+    kind: Literal["comparison"] = "comparison"
+    """What this is."""
+    population: PartPopulation
+    """Where the parts are from."""
+    methods: Annotated[list[Method], Field(min_length=1)]
+    """Ways to free them, each with a name of its own."""
+    laws: list[Law] = Field(default_factory=lambda: list(USUAL_LAWS), min_length=1)
+    """Friction laws of their joints; the courses of single parts are shown under the first."""
+    runs: Annotated[int, Field(ge=1, lt=RUNS_MAX)] = USUAL_RUNS
+    """How many parts each method tries under each law."""
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    """Seed of parts, disturbances and noise."""
+    baselines: list[Name] = Field(default_factory=list)
+    """Names of the methods that the others are measured against, by the best of them. Left out:
+    all."""
+    runs_per_part: Annotated[int, Field(ge=1)] = 5000
+    """Parts of the population in one file: many fill the processor's lanes, few are soon lost."""
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        names = [method.name for method in self.methods]
+        for kind, given in (("methods", names), ("laws", self.laws), ("baselines", self.baselines)):
+            twice = next((name for name in given if list(given).count(name) > 1), None)
+            if twice is not None:
+                raise ValueError(f"{kind}: {twice!r} is there twice; give each once")
+        for name in self.baselines:
+            if name not in names:
+                raise ValueError(f"baselines: {name!r} is not one of {', '.join(names)}")
+        return self
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the methods."""
+        return [method.name for method in self.methods]
+
+    def toml(self) -> str:
+        """Give all it takes to run it again, as TOML that reads back bit for bit."""
+        how = "# The whole comparison. Runs again: breakaway compare comparison.toml --out DIR\n\n"
+        return how + tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
+
+
+def ask(
+    population: str | Path | PartPopulation,
+    methods: Sequence[str | Path | Method] | str | None = None,
+    *,
+    laws: Sequence[str] | str | None = None,
+    runs: int | None = None,
+    seed: int | None = None,
+    baselines: Sequence[str] | str | None = None,
+) -> Asked:
+    """Put a comparison together from names, files and objects.
+
+    A file may hold a population, or a whole comparison as a folder has it; what is given beside
+    it counts then instead of what it says.
+
+    Raises
+    ------
+    StudyError
+        A number or a law is not valid.
+    ScenarioError
+        There is no such population or method, or it is not valid.
+
+    """
+    whole = _whole(population) if isinstance(population, str | Path) else None
+    lists = {"laws": _listed(laws), "baselines": _listed(baselines)}
+    given = {"runs": runs, "seed": seed, **lists}
+    values: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    for law in lists["laws"] or ():
+        _check_law(law)
+    if whole is not None:
+        values = {name: getattr(whole, name) for name in type(whole).model_fields} | values
+    elif isinstance(population, PartPopulation):
+        values["population"] = population
+    else:
+        values["population"] = load_population(population)
+    if whole is None or methods is not None:
+        chosen = preset_names("methods") if methods is None else _listed(methods) or []
+        values["methods"] = [m if isinstance(m, Method) else load_method(m) for m in chosen]
+    return Asked(**values)
+
+
+def _listed(given: Sequence[AnyName] | AnyName | None) -> list[AnyName] | None:
+    """Give a list; one name alone is a list of one."""
+    if given is None:
+        return None
+    return list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [given]
+
+
+def _check_law(law: str) -> None:
+    if law in LAWS:
+        return
+    near = difflib.get_close_matches(str(law), LAWS, n=1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    raise StudyError(f"laws: {law!r} is not one of {', '.join(LAWS)}{hint}")
+
+
+def _whole(source: str | Path) -> Asked | None:
+    """Read a file that holds a whole comparison; None where it does not."""
+    if isinstance(source, str) and source in preset_names("populations"):
+        return None
+    try:
+        values = read_toml(Path(source))
+    except (OSError, ValueError):
+        return None  # whoever reads it as a population says what is wrong
+    if values.get("kind") != KIND:
+        return None
+    try:
+        return Asked.parse(values)
+    except StudyError as error:
+        separator = "\n" if "\n" in str(error) else " "
+        raise StudyError(f"{source}:{separator}{error}") from None

@@ -1,0 +1,295 @@
+"""Run a comparison: trial by trial, each file written as it finishes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from breakaway.ask.comparison.asked import Asked, ask
+from breakaway.ask.comparison.ending import ended, manifest_of, write_end
+from breakaway.ask.comparison.findings import notes_of, sentences_of
+from breakaway.ask.comparison.table import table_of
+from breakaway.ask.comparison.trial_files import Chunk, TrialFiles, chunks_of
+from breakaway.ask.studies import StudyProgress
+from breakaway.ask.studies.folder import prepared
+from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.studies.plan import Row
+from breakaway.base.equality import ByValue
+from breakaway.base.threads import thread_count
+from breakaway.errors import OutputError, StudyError
+from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.population import Law, PartPopulation
+from breakaway.run.trials import Trial, run_trial
+
+DRAWING = "figures and page"
+"""What is done, in words, once all parts are tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison(ByValue):
+    """A finished comparison: what each method did to the same parts, and what that shows."""
+
+    asked: Asked
+    """All it takes to run it again."""
+    trials: Mapping[str, Mapping[str, Trial]]
+    """Law -> name of a method -> what it did, part by part."""
+    table: Sequence[Row]
+    """A row for each law and method."""
+    result: Sequence[str]
+    """What it shows, in sentences."""
+    notes: Sequence[str]
+    """What has to be known before they are trusted."""
+    folder: Path | None
+    """Where it is; None where it was not written."""
+
+    def row(self, law: str, method: str) -> Row:
+        """Give the row of a method under a law.
+
+        Parameters
+        ----------
+        law : str
+            Friction law, as it was asked for.
+        method : str
+            Name of a method.
+
+        Raises
+        ------
+        StudyError
+            There is no such row.
+
+        """
+        for row in self.table:
+            if (row["law"], row["method"]) == (law, method):
+                return row
+        raise StudyError(
+            f"{law}, {method}: was not compared; the laws are {', '.join(self.asked.laws)}, the "
+            f"methods {', '.join(self.asked.names)}"
+        )
+
+
+def compare_methods(
+    population: str | Path | PartPopulation,
+    methods: Sequence[str | Path | Method] | str | None = None,
+    *,
+    laws: Sequence[str] | str | None = None,
+    runs: int | None = None,
+    seed: int | None = None,
+    baselines: Sequence[str] | str | None = None,
+    out: str | Path | None = None,
+    resume: bool = False,
+    threads: int | None = None,
+    progress: Callable[[StudyProgress], None] | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> Comparison:
+    """Try methods of extraction on the same parts, under several friction laws.
+
+    With a folder, ``manifest.json`` comes first, then the parts as they finish (Parquet), then
+    ``table.csv``, figures, the page ``index.html``, ``comparison.toml``, and last
+    ``summary.json``. What was ended, in whatever way, goes on with ``resume``: finished files
+    are read and not computed again, and all files are the same bytes in the end. The results do
+    not depend on threads.
+
+    Parameters
+    ----------
+    population : str, Path or PartPopulation
+        Where the parts are from: a preset's name, a TOML file, or the population itself. A file
+        ``comparison.toml`` of a folder holds a whole comparison; what is given beside counts then.
+    methods : sequence, optional
+        Names of presets, TOML files, or methods. Left out: every preset.
+    laws : sequence of str, optional
+        Friction laws of the joints; single parts are shown under the first. Left out: ``lugre``,
+        ``elasto_plastic`` and ``gms``.
+    runs : int, optional
+        How many parts each method tries under each law. Left out: 10,000.
+    seed : int, optional
+        Seed of parts, disturbances and noise. Left out: 0.
+    baselines : sequence of str, optional
+        Names of the methods by the best of which all others are measured. Left out: each method is
+        measured by the best of all others.
+    out : str or Path, optional
+        The folder; made if it is missing. Left out: nothing is written.
+    resume : bool, optional
+        Whether to go on with a comparison that the folder holds.
+    threads : int, optional
+        Left out: one for each processor.
+    progress : callable, optional
+        Called about 20 times a second with a `StudyProgress`. What it raises ends the comparison.
+    notice : callable, optional
+        Called with a sentence when a file that is not the one that was written, be it damaged,
+        edited or of another comparison, is computed again.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    StudyError
+        A law or a number is not valid, or the folder holds another comparison; nothing has run.
+    ScenarioError
+        There is no such population or method, or it is not valid.
+    OutputError
+        The folder can not be written, or the disk is full; finished files stay.
+    KeyboardInterrupt
+        Ctrl-C; finished files stay.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> done = bk.compare_methods("seized_parts", ["paper_pid"], laws=["lugre"], runs=4)
+    >>> done.row("lugre", "paper_pid")["released"]
+    4
+
+    """
+    asked = ask(population, methods, laws=laws, runs=runs, seed=seed, baselines=baselines)
+    thread_count(threads)
+    folder = None if out is None else Path(out)
+    with _held(folder, asked, resume=resume) as pieces:
+        files = None if pieces is None else TrialFiles(asked, pieces)
+        runner = _Runner(asked, files, threads, progress, notice)
+        try:
+            done = _concluded(asked, runner.run(), folder)
+            if pieces is not None:
+                if not (runner.all_found and ended(pieces)):
+                    runner.report(0, DRAWING)
+                    write_end(asked, done.trials, done.table, done.result, done.notes, pieces)
+                pieces.settle(pieces.names())
+        except OutputError as error:
+            raise OutputError(f"{error}; finished parts stay: resume it to go on") from None
+    return done
+
+
+@contextmanager
+def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[Pieces | None]:
+    """Check every method before anything runs, hold the folder, and give its finished files."""
+    for law in asked.laws:
+        for method in asked.methods:
+            _check(asked, method, law)
+    if folder is None:
+        yield None
+        return
+    if folder.exists() and not folder.is_dir():
+        raise StudyError(f"out: {folder} is a file, not a folder; give a folder")
+    with prepared(folder, manifest_of(asked), resume=resume) as pieces:
+        yield pieces
+
+
+def _check(asked: Asked, method: Method, law: Law) -> None:
+    """Raise unless a method and a law make a scenario."""
+    empty = {name: np.array([value]) for name, value in asked.population.nominal.items()}
+    Trial(asked.population, method, law, asked.seed, range(1), empty, {}).scenario(0)
+
+
+def _concluded(
+    asked: Asked, trials: Mapping[str, Mapping[str, Trial]], folder: Path | None
+) -> Comparison:
+    table = table_of(trials, asked.baselines)
+    return Comparison(
+        asked=asked,
+        trials=trials,
+        table=table,
+        result=sentences_of(asked, trials, table),
+        notes=notes_of(asked),
+        folder=folder,
+    )
+
+
+class _Runner:
+    """Computes chunk by chunk; what is on disk already is read."""
+
+    def __init__(
+        self,
+        asked: Asked,
+        files: TrialFiles | None,
+        threads: int | None,
+        progress: Callable[[StudyProgress], None] | None,
+        notice: Callable[[str], None] | None,
+    ) -> None:
+        self.all_found = True
+        self._asked, self._threads = asked, threads
+        self._progress, self._notice = progress, notice
+        self._files = files
+        self._runs_done = self._runs_found = 0
+
+    def run(self) -> Mapping[str, Mapping[str, Trial]]:
+        """Give all trials, by law and name of the method."""
+        found: dict[str, dict[str, list[Trial]]] = {}
+        for chunk in chunks_of(self._asked):
+            trial = self._found(chunk) or self._computed(chunk)
+            found.setdefault(chunk.law, {}).setdefault(chunk.method.name, []).append(trial)
+        if self._files is not None:
+            self._files.remove_beyond(self._say)
+        return MappingProxyType(
+            {
+                law: MappingProxyType({name: _joined(t) for name, t in by_method.items()})
+                for law, by_method in found.items()
+            }
+        )
+
+    def _found(self, chunk: Chunk) -> Trial | None:
+        """Read a chunk from its file, if that is there as it was written."""
+        if self._files is None or not self._files.found(chunk, self._say):
+            return None
+        self._runs_done += len(chunk.runs)
+        self._runs_found += len(chunk.runs)
+        self.report(0, _doing(chunk))
+        return self._files.read(chunk)
+
+    def _computed(self, chunk: Chunk) -> Trial:
+        self.all_found = False
+        trial = run_trial(
+            self._asked.population,
+            chunk.method,
+            law=chunk.law,
+            runs=chunk.runs,
+            seed=self._asked.seed,
+            threads=self._threads,
+            progress=lambda done, _: self.report(done, _doing(chunk)),
+        )
+        if self._files is not None:
+            self._files.write(chunk, trial)
+        self._runs_done += len(chunk.runs)
+        self.report(0, _doing(chunk))
+        return trial
+
+    def report(self, in_chunk: int, doing: str) -> None:
+        """Tell how far it is."""
+        if self._progress:
+            asked = self._asked
+            self._progress(
+                StudyProgress(
+                    runs_done=self._runs_done + in_chunk,
+                    runs_found=self._runs_found,
+                    runs_max=len(asked.laws) * len(asked.methods) * asked.runs,
+                    doing=doing,
+                )
+            )
+
+    def _say(self, sentence: str) -> None:
+        if self._notice:
+            self._notice(sentence)
+
+
+def _doing(chunk: Chunk) -> str:
+    return f"{chunk.method.name}, {chunk.law}"
+
+
+def _joined(trials: Sequence[Trial]) -> Trial:
+    """Put the chunks of a trial together."""
+    first, last = trials[0], trials[-1]
+    if first is last:
+        return first
+    return Trial(
+        population=first.population,
+        method=first.method,
+        law=first.law,
+        seed=first.seed,
+        runs=range(first.runs.start, last.runs.stop),
+        parts={n: np.concatenate([t.parts[n] for t in trials]) for n in first.parts},
+        metrics={n: np.concatenate([t.metrics[n] for t in trials]) for n in first.metrics},
+    )

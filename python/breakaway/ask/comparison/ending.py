@@ -1,0 +1,178 @@
+"""The end of a comparison in its folder: table, figures, page, and last its summary."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from breakaway._core import __version__
+from breakaway.ask.comparison.asked import KIND, Asked
+from breakaway.ask.comparison.courses import Courses, courses_of
+from breakaway.ask.comparison.table import Trials
+from breakaway.ask.comparison.trial_files import trial_schema
+from breakaway.ask.studies.folder import SUMMARY, as_csv, as_json
+from breakaway.ask.studies.manifest import FORMAT, identity_of
+from breakaway.ask.studies.part_files import PARTS
+from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.studies.plan import Row
+from breakaway.base.output import output_folder
+from breakaway.base.ownership import STUDY
+from breakaway.run.trials import TRIAL_METRICS
+from breakaway.show.plots.comparison import LAW_WORDS, Cloud, plot_course, plot_scatter, plot_shares
+from breakaway.show.plots.style import save_figure
+from breakaway.show.report.comparison import ShownFigure, comparison_page
+
+PAGE, TABLE, ASKED = "index.html", "table.csv", "comparison.toml"
+
+
+def manifest_of(asked: Asked) -> dict[str, Any]:
+    """Give what determines the results of a comparison, and what they look like."""
+    manifest = {
+        "format": FORMAT,
+        "breakaway_version": __version__,
+        "libraries": {name: version(name) for name in ("numpy", "scipy")},
+        "study": asked.model_dump(mode="json"),
+        "seed": asked.seed,
+        "metrics": list(TRIAL_METRICS),
+        "columns": [
+            {"name": f.name, "type": str(f.type), "unit": f.metadata[b"unit"].decode()}
+            for f in trial_schema()
+        ],
+    }
+    return manifest | {"identity": identity_of(manifest)}
+
+
+def ended(pieces: Pieces) -> bool:
+    """Whether a folder has everything that the end writes, as it was written."""
+    names = [name for name in pieces.names() if not name.startswith(PARTS)]
+    return SUMMARY in names and all(pieces.flaw(name) is None for name in names)
+
+
+def write_end(
+    asked: Asked,
+    trials: Trials,
+    table: Sequence[Row],
+    result: Sequence[str],
+    notes: Sequence[str],
+    pieces: Pieces,
+) -> None:
+    """Write table, figures, page and the comparison itself, and last the summary."""
+    courses = courses_of(trials)
+    with output_folder(pieces.folder, STUDY) as staging:
+        (staging / TABLE).write_text(as_csv(table), encoding="utf-8", newline="")
+        (staging / ASKED).write_text(asked.toml(), encoding="utf-8", newline="\n")
+        figures = _draw(asked, trials, table, courses, staging)
+        page = comparison_page(
+            population=asked.population,
+            methods=asked.methods,
+            laws=asked.laws,
+            runs=asked.runs,
+            seed=asked.seed,
+            table=table,
+            result=result,
+            notes=notes,
+            figures=figures,
+            courses={
+                law: {name: found.worst for name, found in by_method.items()}
+                for law, by_method in courses.items()
+            },
+        )
+        (staging / PAGE).write_text(page, encoding="utf-8", newline="\n")
+        files = pieces.note_staged(staging)
+    summary = {
+        "kind": KIND,
+        "population": asked.population.name,
+        "methods": asked.names,
+        "laws": asked.laws,
+        "runs": asked.runs,
+        "seed": asked.seed,
+        "breakaway_version": __version__,
+        "result": list(result),
+        "notes": list(notes),
+        "table": list(table),
+        "files": files,
+    }
+    pieces.write(SUMMARY, as_json(summary))
+
+
+def _draw(
+    asked: Asked,
+    trials: Trials,
+    table: Sequence[Row],
+    courses: Mapping[str, Mapping[str, Courses]],
+    folder: Path,
+) -> list[ShownFigure]:
+    """Draw and save every figure, and give what the page shows of them."""
+    limits = asked.population.gentle, asked.population.strict
+    shown = [
+        _saved(
+            "shares",
+            plot_shares(table),
+            folder,
+            "How many parts come out, and how gently.",
+            "Share of the parts, with its 95 % interval (Clopper and Pearson); all methods try "
+            "the same parts.",
+        ),
+        _saved(
+            "jump_against_peak",
+            plot_scatter(_clouds(trials), *limits),
+            folder,
+            "Jump against peak force, part by part.",
+            "Each point is a part: its largest jump over its largest force as a multiple of its "
+            "own breakaway force. Boxes: the gentle and, dashed, the strict limits; points within "
+            "may still fail by their velocity. Crosses: parts left in place.",
+        ),
+    ]
+    for law, by_method in courses.items():
+        for place, (name, found) in enumerate(by_method.items()):
+            figure = plot_course(found.median, found.worst)
+            shown.append(
+                _saved(
+                    f"course_{place + 1}_{law}",
+                    figure,
+                    folder,
+                    f"{name}, {LAW_WORDS[law]}.",
+                    "Force and position of the part in the middle by its largest jump, of those "
+                    "that came free; of the part with the largest jump; and of that one about its "
+                    "worst slip, which is shaded. Dashed: the force that would break the joint "
+                    "loose where the part is. Where the tip of a feed axis is behind the part, it "
+                    "does not push.",
+                    method=name,
+                    law=law,
+                )
+            )
+    return shown
+
+
+def _clouds(trials: Trials) -> list[Cloud]:
+    return [
+        Cloud(
+            law=law,
+            method=name,
+            peak=trial.metrics["peak_over_breakaway"],
+            jump_m=trial.metrics["largest_jump_m"],
+            released=trial.released,
+            gentle=trial.within(trial.population.gentle),
+        )
+        for law, by_method in trials.items()
+        for name, trial in by_method.items()
+    ]
+
+
+def _saved(
+    key: str,
+    figure: Figure,
+    folder: Path,
+    title: str,
+    caption: str,
+    method: str = "",
+    law: str = "",
+) -> ShownFigure:
+    for suffix in ("svg", "png"):
+        save_figure(figure, folder / f"{key}.{suffix}")
+        figure.set_layout_engine("none")  # it is laid out by now
+    return ShownFigure(key, title, caption, folder / f"{key}.svg", method, law)

@@ -1,0 +1,206 @@
+"""A study's folder, read as far as it is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from importlib import import_module
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from breakaway.ask.studies.folder import SUMMARY, finished_names, is_finished, read_summary
+from breakaway.ask.studies.manifest import MANIFEST, kind_of, read_manifest
+from breakaway.ask.studies.part_files import part_name, parts_in
+from breakaway.ask.studies.parts import part_schema
+from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.studies.study import Study
+from breakaway.errors import StudyError
+from breakaway.run.batch.batch import as_pandas
+from breakaway.run.batch.columns import at_run, with_nominal_controller
+from breakaway.run.finished import Run
+
+
+class StudyResult:
+    """A study in a folder, finished or not. Runs are read when they are asked for."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        """Where it is."""
+        self.manifest: Mapping[str, Any] = read_manifest(folder)
+        """What determines it: the study, its scenario, seed, versions, columns."""
+        kind = kind_of(self.manifest)
+        if kind != "study":
+            raise StudyError(
+                f"{folder / MANIFEST}: is of a {kind}, not of a study"
+                + ("; open it with open_tuning" if kind == "tuning" else "")
+            )
+        self._pieces = Pieces(folder, self.manifest["identity"])
+
+    def __repr__(self) -> str:
+        state = "finished" if self.finished else f"not finished, {len(self.part_files)} parts"
+        study = self.manifest["study"]
+        return f"<study {study['name']!r}, {study['kind']}, {state}>"
+
+    @property
+    def finished(self) -> bool:
+        """Whether the study came to its end, and all parts and the summary are as it wrote them."""
+        return is_finished(self._pieces)
+
+    @property
+    def part_files(self) -> list[Path]:
+        """Files of the finished parts, in their order."""
+        return [self.folder / name for name in parts_in(self.folder)]
+
+    @cached_property
+    def study(self) -> Study:
+        """What was asked."""
+        from breakaway.ask.studies.files import parse_study
+
+        return parse_study(self.manifest["study"])
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What it shows: result, notes and tables.
+
+        Raises
+        ------
+        StudyError
+            The study is not finished, or a part or the summary is not as it wrote it.
+
+        """
+        if not (self.folder / SUMMARY).is_file():
+            raise StudyError(
+                f"{self.folder}: is not finished, {len(self.part_files)} parts are; "
+                "go on with --resume"
+            )
+        return read_summary(self._pieces)
+
+    @property
+    def dataset(self) -> Any:  # noqa: ANN401 - pyarrow has no type stubs
+        """The runs of the finished parts as a dataset of pyarrow, of which nothing is read yet.
+
+        Raises
+        ------
+        StudyError
+            A part is missing, or not as the study wrote it.
+
+        """
+        self._refuse_flawed_parts()
+        manifest = self.manifest
+        schema = part_schema(manifest["labels"], manifest["varied"], manifest["metrics"])
+        return import_module("pyarrow.dataset").dataset(
+            [str(path) for path in self.part_files], schema=schema, format="parquet"
+        )
+
+    def _refuse_flawed_parts(self) -> None:
+        if (self.folder / SUMMARY).exists():
+            names = finished_names(self._pieces)
+        else:
+            names = [part_name(number) for number in range(len(self.part_files))]
+            self._pieces.reread()
+        for name in names:
+            self._pieces.refuse_flawed(name)
+
+    def scan(self, columns: Sequence[str] | None = None, filter: Any = None) -> Any:  # noqa: ANN401
+        """Read some columns of the runs that pass a filter, as a table of pyarrow.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            Names of columns. Left out: all.
+        filter : pyarrow.dataset.Expression, optional
+            Such as ``pyarrow.dataset.field("outcome") == "diverged"``. Left out: all runs.
+
+        Raises
+        ------
+        StudyError
+            There is no such column, or a part is missing or not as the study wrote it.
+
+        """
+        known = [column["name"] for column in self.manifest["columns"]]
+        for name in columns or ():
+            if name not in known:
+                raise StudyError(f"{name}: is not a column; the columns are {', '.join(known)}")
+        wanted = None if columns is None else list(columns)
+        return self.dataset.to_table(columns=wanted, filter=filter)
+
+    def to_pandas(self) -> Any:  # noqa: ANN401 - pandas is optional
+        """Read all runs into a pandas DataFrame.
+
+        Raises
+        ------
+        StudyError
+            pandas is not installed.
+
+        """
+        return as_pandas(self.scan())
+
+    def replay(self, point: int, run_index: int, *, trace_every: int | None = None) -> Run:
+        """Simulate one run again, with its trace; its metrics are the same bits.
+
+        Parameters
+        ----------
+        point : int
+            Number of its point, as in the column ``point``.
+        run_index : int
+            Its run number, as in the column ``run_index``.
+        trace_every : int, optional
+            Every how many samples the trace keeps a row. Left out: as the scenario says.
+
+        Raises
+        ------
+        StudyError
+            There is no such run among the finished parts.
+
+        """
+        from breakaway.ask.studies.running import plan_of
+        from breakaway.run.simulation import simulate
+
+        fields = import_module("pyarrow.dataset").field
+        wanted = (fields("point") == point) & (fields("run_index") == run_index)
+        labels, varied = self.manifest["labels"], self.manifest["varied"]
+        table = self.scan([*labels, *varied], wanted)
+        if table.num_rows != 1:
+            raise StudyError(
+                f"point {point}, run {run_index}: is not among the finished runs; look at the "
+                "columns point and run_index"
+            )
+        found = table.to_pylist()[0]
+        plan = plan_of(self.study)
+        scenario = with_nominal_controller(plan.scenario_at({name: found[name] for name in labels}))
+        placed = {path: np.array([found[path]]) for path in varied if isfinite(found[path])}
+        scenario = at_run(scenario, placed, 0)
+        if trace_every is not None:
+            scenario = scenario.with_({"trace.every_samples": trace_every})
+        return simulate(scenario, run_index=run_index)
+
+
+def open_study(folder: str | Path) -> StudyResult:
+    """Open a study's folder, finished or not; only its manifest is read.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder that the study was run into.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    StudyError
+        The folder holds no study.
+
+    Examples
+    --------
+    >>> open_study("nowhere")
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.StudyError: nowhere: holds no study (manifest.json is missing); give ...
+
+    """
+    return StudyResult(Path(folder))

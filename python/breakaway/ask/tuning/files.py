@@ -1,0 +1,61 @@
+"""Tunings in files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from breakaway.ask.studies.files import load_table
+from breakaway.ask.tuning.problem import Tuning
+from breakaway.model.scenario.files import preset_names
+
+
+def load_tuning(path: str | Path) -> Tuning:
+    """Load a tuning from a TOML file.
+
+    Population and method are presets, tables of the file, or paths of files, which start at the
+    tuning's folder.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Tuning
+
+    Raises
+    ------
+    StudyError
+        There is no such file, it is not TOML, a value is not valid, or the tuning contradicts
+        itself.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> text = '''
+    ... population = "seized_parts"
+    ... method = "steady_feed"
+    ... objectives = ["strict_share", "median_time_to_release_s"]
+    ... [tune]
+    ... "controller.speed_m_per_s" = { low = 0.01, high = 0.03 }
+    ... '''
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "tuning.toml"
+    ...     _ = path.write_text(text)
+    ...     load_tuning(path).trials
+    100
+
+    """
+    return load_table(path, "tuning", lambda values, at: Tuning.parse(_from_folder(values, at)))
+
+
+def _from_folder(values: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Let paths start at the folder of the tuning; what is no file there may be a preset."""
+    for key, presets in (("population", "populations"), ("method", "methods")):
+        named = values.get(key)
+        if isinstance(named, str) and named not in preset_names(presets):
+            inside = folder / named
+            values[key] = str(inside) if inside.exists() else named
+    return values

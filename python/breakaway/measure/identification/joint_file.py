@@ -1,0 +1,446 @@
+"""The joint file: what one log told about a joint, and what it did not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import tomli_w
+from pydantic import Field
+
+from breakaway._core import __version__
+from breakaway.base.output import write_atomically
+from breakaway.base.reading import text_of
+from breakaway.errors import LogError, ScenarioError
+from breakaway.measure.identification.inertia_friction import InertiaFrictionFit
+from breakaway.measure.identification.result import Identification
+from breakaway.measure.identification.uncertainty import Posterior
+from breakaway.measure.identification.verdicts import stiction_peak
+from breakaway.measure.logs.log import Array, Log
+from breakaway.model.scenario.distribution import Samples
+from breakaway.model.scenario.files import parse_toml
+from breakaway.model.scenario.model import Model, Name, NotNegative, Positive, Text
+
+DRAWS = 200
+"""Joints that a file holds."""
+
+METHOD = "IDIM least squares (Janot, Gautier, Brunot 2019)"
+
+
+class Settings(Model):
+    """Settings of the regression."""
+
+    lowpass_hz: Positive
+    decimation: Annotated[int, Field(ge=1)]
+    sample_rate_hz: Positive
+    trimmed_samples: Annotated[int, Field(ge=0)]
+
+
+class FitSettings(Model):
+    """Settings of an output-error fit, as `breakaway.identify` names them."""
+
+    law: Name
+    asymmetric: bool
+    position_dependent: bool
+    motion: Name
+    repeats: list[list[float]]
+    origin_m: float
+    steps_per_row: Annotated[int, Field(ge=1)]
+    loss: Name
+    starts: Annotated[int, Field(ge=1)]
+    seed: int
+    complete: bool
+
+
+class Provenance(Model):
+    """Where the figures come from. ``log_sha256`` is absent for a log that was in no file."""
+
+    log: Text
+    log_sha256: Name | None = None
+    breakaway_version: Name
+    method: Text
+    settings: Settings | None = None
+    fit: FitSettings | None = None
+    samples: Annotated[int, Field(ge=1)]
+    notes: Annotated[list[Text], Field(default_factory=list)]
+
+
+class Part(Model):
+    """The moving part."""
+
+    mass_kg: Positive | None = None
+
+
+class Joint(Model):
+    """What the log tells of the joint; where directions differ, of the positive one."""
+
+    coulomb_n: NotNegative
+    viscous_n_s_per_m: NotNegative | None = None
+    stiction_n: Positive | None = None
+    stiffness_n_per_m: Positive | None = None
+    damping_n_s_per_m: NotNegative | None = None
+    stribeck_velocity_m_per_s: Positive | None = None
+
+
+class Rig(Model):
+    """What belongs to the rig that measured, not to the joint."""
+
+    offset_n: float
+
+
+class Draws(Model):
+    """Joints that are as likely as any other, given the log: a row of all columns is one joint.
+
+    ``source`` says what they were drawn from: the posterior, or the normal distribution that the
+    standard errors and correlations give, of which values that no joint can have are drawn anew.
+    """
+
+    source: Text
+    seed: int
+    values: dict[str, list[float]]
+
+
+class AsymmetricParameters(Model):
+    """Parameters with friction of its own in each direction, positive where it resists."""
+
+    mass_kg: float
+    viscous_positive_n_s_per_m: float
+    viscous_negative_n_s_per_m: float
+    coulomb_positive_n: float
+    coulomb_negative_n: float
+
+
+class Asymmetric(AsymmetricParameters):
+    """The asymmetric parameters and their standard errors."""
+
+    standard_error: AsymmetricParameters
+
+
+class RelativeForceError(Model):
+    """100 ‖F - W θ‖ / ‖F‖ of either fit, in percent."""
+
+    symmetric: NotNegative
+    asymmetric: NotNegative
+
+
+class JointFile(Model):
+    """An identified joint, as it is kept in ``joint.toml``.
+
+    Units are in the keys. ``not_identified`` maps a field of a scenario to the reason why the
+    log does not tell it: such a field keeps the scenario's own value.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from breakaway.measure.identification import identify_inertia_friction
+    >>> t_s = np.arange(5000) / 1000.0
+    >>> v = 0.3 * np.cos(5 * t_s) + 0.2 * np.cos(2 * t_s)
+    >>> force_n = np.gradient(4 * v, t_s) + 30 * v + 6 * np.sign(v)
+    >>> x = 0.06 * np.sin(5 * t_s) + 0.1 * np.sin(2 * t_s)
+    >>> log = Log(t_s=t_s, position_m=x, force_n=force_n)
+    >>> joint = JointFile.from_fit(identify_inertia_friction(log), log)
+    >>> list(joint.scenario_changes())
+    ['part.mass_kg', 'joint.coulomb_n', 'joint.viscous_n_s_per_m']
+
+    """
+
+    provenance: Provenance
+    part: Part
+    joint: Joint
+    rig: Rig
+    standard_error: dict[str, NotNegative]
+    interval: dict[str, list[float]]
+    asymmetric: Asymmetric | None = None
+    relative_force_error_percent: RelativeForceError | None = None
+    not_identified: dict[str, Text]
+    draws: Draws | None = None
+
+    @classmethod
+    def from_fit(cls, fit: InertiaFrictionFit, log: Log) -> JointFile:
+        """Gather the figures of a fit.
+
+        Parameters
+        ----------
+        fit : InertiaFrictionFit
+            What was identified.
+        log : Log
+            What it was identified from.
+
+        Raises
+        ------
+        LogError
+            A symmetric friction parameter is negative: no joint file holds such a joint.
+
+        """
+        both = fit.symmetric
+        for name, value in (
+            ("coulomb_n", both.coulomb_n),
+            ("viscous_n_s_per_m", both.viscous_n_s_per_m),
+        ):
+            if value < 0.0:
+                raise LogError(
+                    f"{log.name}: {name} comes out as {value:.4g} ± "
+                    f"{both.standard_error[name]:.2g}; a joint file holds values of at least 0: "
+                    "record a log whose speeds span a wider range"
+                )
+        names = tuple(AsymmetricParameters.model_fields)
+        each = {name: getattr(fit.asymmetric, name) for name in names}
+        return cls(
+            provenance=Provenance(
+                log=log.name,
+                log_sha256=log.sha256,
+                breakaway_version=__version__,
+                method=METHOD,
+                settings=Settings(
+                    lowpass_hz=fit.lowpass_hz,
+                    decimation=fit.decimation,
+                    sample_rate_hz=fit.sample_rate_hz,
+                    trimmed_samples=fit.trimmed_samples,
+                ),
+                samples=both.samples,
+                notes=list(fit.notes),
+            ),
+            part=Part(mass_kg=both.mass_kg),
+            joint=Joint(coulomb_n=both.coulomb_n, viscous_n_s_per_m=both.viscous_n_s_per_m),
+            rig=Rig(offset_n=both.offset_n),
+            standard_error=dict(both.standard_error),
+            interval=fit.intervals(),
+            asymmetric=Asymmetric.model_validate(
+                {**each, "standard_error": dict(fit.asymmetric.standard_error)}
+            ),
+            relative_force_error_percent=RelativeForceError(
+                symmetric=both.relative_force_error_percent,
+                asymmetric=fit.asymmetric.relative_force_error_percent,
+            ),
+            not_identified=dict(fit.not_identified),
+            draws=_regression_draws(fit),
+        )
+
+    @classmethod
+    def from_identification(
+        cls, found: Identification, posterior: Posterior | None = None, *, seed: int = 0
+    ) -> JointFile:
+        """Gather an identification by output error, with draws for a study.
+
+        Parameters
+        ----------
+        found : Identification
+            What was identified.
+        posterior : Posterior, optional
+            Where it was sampled; else draws are from the normal distribution of the errors.
+        seed : int
+            Chooses the draws.
+
+        Raises
+        ------
+        LogError
+            The Coulomb friction is not identifiable: there is no joint to write.
+
+        """
+        told = {one.name for one in found.estimates if one.identifiable}
+        coulomb = "coulomb_positive_n" if found.law.asymmetric else "coulomb_n"
+        if coulomb in found.fixed:
+            raise LogError(
+                f"{found.log.name}: {coulomb} was fixed, not identified; there is no joint to write"
+            )
+        if coulomb not in told:
+            raise LogError(
+                f"{found.log.name}: {coulomb} is not identifiable from this log, so there is no "
+                "joint to write; record reversals and sliding in both directions"
+            )
+        drawn = posterior.samples if posterior is not None else found.draws(DRAWS, seed=seed)
+        fields = _fields_of(found.values, told)
+        columns = _fields_of({name: one[_thinned(one)] for name, one in drawn.items()}, told)
+        changes: dict[str, dict[str, float]] = {"part": {}, "joint": {}}
+        for path, value in fields.items():
+            table, name = path.split(".")
+            changes[table][name] = value
+        return cls(
+            provenance=_provenance(found),
+            part=Part(**changes["part"]),
+            joint=Joint(**changes["joint"]),
+            rig=Rig(offset_n=_last_offset(found.values)),
+            standard_error={
+                one.name: one.standard_error for one in found.estimates if one.identifiable
+            },
+            interval={one.name: [one.low, one.high] for one in found.estimates if one.identifiable},
+            not_identified=_not_identified(found, fields),
+            draws=Draws(
+                source="normal" if posterior is None else "posterior",
+                seed=seed,
+                values={path: column.tolist() for path, column in columns.items()},
+            ),
+        )
+
+    def scenario_changes(self) -> dict[str, float]:
+        """Return the fields of a scenario that this file sets, and their values."""
+        tables = {"part": self.part, "joint": self.joint}
+        return {
+            f"{table}.{name}": value
+            for table, model in tables.items()
+            for name, value in model
+            if value is not None
+        }
+
+    def vary(self) -> dict[str, Samples]:
+        """Return what differs from part to part in a study: rows of the draws.
+
+        Raises
+        ------
+        ScenarioError
+            The file has no draws.
+
+        """
+        if self.draws is None:
+            raise ScenarioError(
+                "joint file: has no draws, so no spread is known; identify the joint anew"
+            )
+        return {
+            path: Samples(values=tuple(values), rows="shared")
+            for path, values in self.draws.values.items()
+        }
+
+    def save(self, path: str | Path) -> None:
+        """Write the file whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file; missing folders are made.
+
+        Raises
+        ------
+        OutputError
+            The folder can not be made or not be written to, or ``path`` is a folder.
+
+        """
+        text = tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
+        write_atomically(Path(path), text.encode())
+
+    @classmethod
+    def load(cls, path: str | Path) -> JointFile:
+        """Read a joint file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Raises
+        ------
+        ScenarioError
+            The file is missing, not TOML, lacks a key, has one too many, or has a value out of
+            range; each is named.
+
+        """
+        source = Path(path)
+        return parse_toml(cls, text_of(source, ScenarioError), source.name)
+
+
+def _fields_of(values: Mapping[str, Any], told: set[str]) -> dict[str, Any]:
+    """Return fields of a scenario from parameters, or columns of fields from columns."""
+
+    def positive(name: str) -> str:
+        return name if name in values else _sided(name)
+
+    fields: dict[str, Any] = {}
+    coulomb = values[positive("coulomb_n")]
+    fields["joint.coulomb_n"] = coulomb
+    viscous = positive("viscous_n_s_per_m")
+    if viscous in told:
+        fields["joint.viscous_n_s_per_m"] = values[viscous]
+    if "stiction_ratio" in told:
+        fields["joint.stiction_n"] = values["stiction_ratio"] * coulomb
+    for name in ("stribeck_velocity_m_per_s", "stiffness_n_per_m", "damping_n_s_per_m"):
+        if name in told:
+            fields[f"joint.{name}"] = values[name]
+    if "mass_kg" in told:
+        fields["part.mass_kg"] = values["mass_kg"]
+    return fields
+
+
+def _last_offset(values: Mapping[str, float]) -> float:
+    offsets = [value for name, value in values.items() if name.startswith("offset_")]
+    return offsets[-1] if offsets else 0.0
+
+
+def _sided(name: str) -> str:
+    """Return the name of a number in the positive direction.
+
+    >>> _sided("viscous_n_s_per_m")
+    'viscous_positive_n_s_per_m'
+    """
+    quantity, unit = name.split("_", 1)
+    return f"{quantity}_positive_{unit}"
+
+
+def _thinned(column: Array) -> slice:
+    return slice(None, None, max(1, len(column) // DRAWS))
+
+
+def _not_identified(found: Identification, fields: Mapping[str, float]) -> dict[str, str]:
+    reasons = {one.parameter: one.because for one in found.verdicts if not one.identifiable}
+    out = {}
+    for field in (
+        "joint.stiction_n",
+        "joint.viscous_n_s_per_m",
+        "joint.stiffness_n_per_m",
+        "joint.damping_n_s_per_m",
+        "joint.stribeck_velocity_m_per_s",
+        "part.mass_kg",
+    ):
+        if field not in fields:
+            name = field.split(".")[1]
+            keys = ("stiction_ratio" if name == "stiction_n" else name, _sided(name))
+            why = next((reasons[key] for key in keys if key in reasons), "it was held in the fit")
+            out[field] = why
+    out["joint.engagement_length_m"] = "how far the guide reaches is known from the drawing"
+    return out
+
+
+def _provenance(found: Identification) -> Provenance:
+    settings = found.settings
+    return Provenance(
+        log=found.log.name,
+        log_sha256=found.log.sha256,
+        breakaway_version=__version__,
+        method=f"output error, {found.law.label}, {settings.motion} motion",
+        fit=FitSettings(
+            law=found.law.name,
+            asymmetric=found.law.asymmetric,
+            position_dependent=found.law.position_dependent,
+            motion=settings.motion,
+            repeats=[list(span) for span in found.spans],
+            origin_m=settings.origin_m,
+            steps_per_row=settings.steps,
+            loss=found.loss,
+            starts=found.starts,
+            seed=found.seed,
+            complete=found.complete,
+        ),
+        samples=len(found.fit.t_s),
+        notes=[*found.notes, stiction_peak({e.name: e for e in found.estimates}, found.verdicts)],
+    )
+
+
+def _regression_draws(fit: InertiaFrictionFit) -> Draws:
+    """Draw joints from the normal distribution of the regression's errors."""
+    both = fit.symmetric
+    fields = {
+        "mass_kg": "part.mass_kg",
+        "coulomb_n": "joint.coulomb_n",
+        "viscous_n_s_per_m": "joint.viscous_n_s_per_m",
+    }
+    names = list(both.standard_error)
+    places = [names.index(name) for name in fields]
+    covariance = np.array(both.covariance)[np.ix_(places, places)]
+    center = [getattr(both, name) for name in fields]
+    rng = np.random.default_rng(0)
+    kept = np.empty((0, len(fields)))
+    while len(kept) < DRAWS:
+        drawn = rng.multivariate_normal(center, covariance, DRAWS)
+        kept = np.vstack([kept, drawn[(drawn > 0.0).all(axis=1)]])
+    columns = {path: kept[:DRAWS, i].tolist() for i, path in enumerate(fields.values())}
+    return Draws(source="normal", seed=0, values=columns)

@@ -1,0 +1,257 @@
+"""Which parameters a log can determine, which it can not, and what experiment would."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from breakaway.measure.identification.guess import MOVING
+from breakaway.measure.identification.laws import Law
+from breakaway.measure.identification.record import Rows, RunSettings
+from breakaway.measure.logs.derived import noise_floor
+from breakaway.measure.logs.log import Array
+
+Places = NDArray[np.integer[Any]]
+"""Numbers of rows."""
+
+SPEED_RATIO = 3.0
+"""Speeds must differ by this factor before what depends on speed shows."""
+
+SLIDING_SHARE = 0.02
+"""Least share of the moving rows that makes a band of speed count."""
+
+PRESLIDING_QUANTA = 5.0
+"""A presliding deflection must exceed the noise of the position by this factor."""
+
+NO_PEAK = 1.02
+"""F_s / F_c whose interval ends below this is no stiction peak."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: its value, standard error and 95 % interval.
+
+    ``standard_error`` is that of the value; the interval of a positive parameter is that of its
+    logarithm, so it is not symmetric. ``identifiable`` is whether the log tells it.
+    """
+
+    name: str
+    value: float
+    standard_error: float
+    low: float
+    high: float
+    identifiable: bool
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """What a log excites.
+
+    Parameters
+    ----------
+    slow_speed_m_per_s, fast_speed_m_per_s : float
+        5 % and 95 % quantiles of the speed where the part moves.
+    reversals : int
+        Changes of direction.
+    rests : int
+        Rests of at least 10 rows that end in motion.
+    presliding_m, noise_m : float
+        Deflection of the joint before it slides, as far as the force and the motion show it, and
+        the noise of the position.
+    both_directions : bool
+        Whether at least 2 % of the moving rows go either way.
+
+    """
+
+    slow_speed_m_per_s: float
+    fast_speed_m_per_s: float
+    reversals: int
+    rests: int
+    presliding_m: float
+    noise_m: float
+    both_directions: bool
+
+    def __str__(self) -> str:
+        return (
+            f"excited: {self.slow_speed_m_per_s:.3g} to {self.fast_speed_m_per_s:.3g} m/s, "
+            f"{self.reversals} reversals, {self.rests} rests that end in motion, presliding of "
+            f"{self.presliding_m:.2g} m against {self.noise_m:.2g} m of noise"
+        )
+
+    @property
+    def speed_ratio(self) -> float:
+        """Fast over slow speed."""
+        return self.fast_speed_m_per_s / max(self.slow_speed_m_per_s, 1e-300)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a log determines one parameter, why, and what would."""
+
+    parameter: str
+    identifiable: bool
+    because: str
+    remedy: str = ""
+
+
+def excitation(rows: Rows, places: Places) -> Excitation:
+    """Measure what a log excites, in the rows at ``places``."""
+    x, v, _, force = rows.columns[:4, places]
+    noise = noise_floor(rows.log, "position_m")
+    noise_m = max(noise.white, noise.quantization)
+    speed = np.abs(v)
+    top = float(np.quantile(speed, 0.99))
+    moving = speed > MOVING * top
+    sign = np.sign(v[moving])
+    slow, fast = (float(q) for q in np.quantile(speed[moving], [0.05, 0.95]))
+    return Excitation(
+        slow_speed_m_per_s=slow,
+        fast_speed_m_per_s=fast,
+        reversals=int(np.count_nonzero(np.diff(sign))),
+        rests=_rests(moving),
+        presliding_m=_presliding(x, v, force, top),
+        noise_m=noise_m,
+        both_directions=bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE),
+    )
+
+
+def _rests(moving: Array) -> int:
+    edges = np.flatnonzero(np.diff(moving.astype(int)))
+    starts = np.concatenate([[0], edges + 1])
+    lengths = np.diff(np.concatenate([starts, [len(moving)]]))
+    resting = ~moving[starts]
+    return int(np.sum(resting[:-1] & (lengths[:-1] >= 10)))
+
+
+def _presliding(x: Array, v: Array, force: Array, top: float) -> float:
+    """Return the median travel from a turn until the force has changed by 80 % of both levels."""
+    level = float(np.median(np.abs(force[np.abs(v) > 0.5 * top])))
+    moving = np.flatnonzero(np.abs(v) > 0.02 * top)
+    turns = np.flatnonzero(np.diff(np.sign(v[moving])))
+    if turns.size == 0:
+        return 0.0
+    travels = []
+    lasts = [*moving[turns[1:]], len(x) - 1]
+    for before, after, last in zip(moving[turns], moving[turns + 1], lasts, strict=True):
+        ahead = slice(before, last + 1)
+        changed = np.abs(force[ahead] - force[before]) > 0.8 * 2.0 * level
+        if changed.any():
+            there = before + int(np.argmax(changed))
+            turn = x[before : after + 1]
+            far = turn.max() if v[before] > 0.0 else turn.min()
+            travels.append(abs(float(x[there]) - float(far)))
+    return float(np.median(travels)) if travels else 0.0
+
+
+def verdicts(
+    estimates: Sequence[Estimate], held: Sequence[Verdict], law: Law, fixed: Mapping[str, float]
+) -> tuple[Verdict, ...]:
+    """Judge each parameter of a LuGre joint: what was fitted, held back, and left out."""
+    found = {one.name: one for one in estimates}
+    named = {one.parameter for one in held} | found.keys() | fixed.keys()
+    out = [_by_error(one, found) for one in estimates]
+    left_out = [
+        Verdict(name, False, f"law '{law.name}' does not have it", remedy)
+        for name, remedy in _LEFT_OUT.items()
+        if name not in named
+    ]
+    return (*out, *held, *left_out)
+
+
+_LEFT_OUT = {
+    "stiction_ratio": "fit law 'stribeck' or 'lugre'",
+    "stribeck_velocity_m_per_s": "fit law 'stribeck' or 'lugre'",
+    "stiffness_n_per_m": "fit law 'lugre' or 'elasto_plastic'",
+    "damping_n_s_per_m": "fit law 'lugre' or 'elasto_plastic'",
+}
+
+
+def _by_error(one: Estimate, found: Mapping[str, Estimate]) -> Verdict:
+    ratio = found.get("stiction_ratio")
+    if one.name == "stribeck_velocity_m_per_s" and ratio and ratio.low < 1.0 < ratio.high:
+        return Verdict(one.name, False, "F_s / F_c is not told from 1: it acts on nothing", _SPEEDS)
+    if one.identifiable:
+        return Verdict(one.name, True, f"95 % interval {one.low:.4g} to {one.high:.4g}")
+    return Verdict(one.name, False, one.remark, _REMEDIES.get(one.name, _MORE))
+
+
+_MORE = "record for longer, with more reversals and more speeds"
+_SPEEDS = (
+    "slide at constant speeds from creeping to fast, at least a factor of 30 apart, in both "
+    "directions"
+)
+_REMEDIES = {
+    "stiction_ratio": "start from rest many times, after rests of several lengths, and creep",
+    "stribeck_velocity_m_per_s": _SPEEDS,
+    "viscous_n_s_per_m": _SPEEDS,
+    "viscous_positive_n_s_per_m": _SPEEDS,
+    "viscous_negative_n_s_per_m": _SPEEDS,
+    "stiffness_n_per_m": "load the joint slowly to and fro below breakaway, with a position "
+    "sensor that resolves a twentieth of the deflection",
+    "damping_n_s_per_m": "strike or shake the joint while it sticks, sampled at ten times its "
+    "resonance",
+    "offset_n": "let the part slide both ways",
+    "elastic_share": "load the joint slowly to and fro up to breakaway",
+    "mass_kg": "accelerate harder, or weigh the part and fix the mass (`fixed`, --fix)",
+}
+
+
+def unexcited(
+    names: Sequence[str], shown: Excitation, settings: RunSettings, mass_shows: bool
+) -> dict[str, tuple[float, Verdict]]:
+    """Return the parameters that a log does not excite: the value to hold each at, and why.
+
+    Fitted all the same, they would take any value that suits the error of the law, and pull the
+    others with them.
+    """
+    out: dict[str, tuple[float, Verdict]] = {}
+
+    def hold(name: str, value: float, because: str) -> None:
+        if name in names:
+            remedy = _REMEDIES.get(name, _MORE)
+            verdict = Verdict(name, False, f"held at {value:g}: {because}", remedy)
+            out[name] = (value, verdict)
+
+    if settings.motion == "imposed" and not mass_shows:
+        hold("mass_kg", 0.0, "inertia is lost in the force of friction")
+    if shown.speed_ratio < SPEED_RATIO:
+        speeds = (
+            f"nearly one speed, 90 % of the sliding rows lie between "
+            f"{shown.slow_speed_m_per_s:.3g} and {shown.fast_speed_m_per_s:.3g} m/s"
+        )
+        hold("stiction_ratio", 1.0, speeds)
+        hold("stribeck_velocity_m_per_s", 1.0, speeds)
+        for name in names:
+            if name.startswith("viscous"):
+                hold(name, 0.0, speeds)
+        if settings.motion == "imposed":
+            hold("damping_n_s_per_m", 0.0, speeds)
+    if not shown.both_directions:
+        hold("offset_n", 0.0, "the part slides one way only, so an offset looks like friction")
+    if shown.presliding_m < PRESLIDING_QUANTA * shown.noise_m and settings.motion == "imposed":
+        depth = f"presliding is {shown.presliding_m:.2g} m, the noise {shown.noise_m:.2g} m"
+        hold("elastic_share", 0.5, depth)
+        hold("damping_n_s_per_m", 0.0, depth)
+    return out
+
+
+def stiction_peak(found: Mapping[str, Estimate], verdict: Sequence[Verdict]) -> str:
+    """Say in one sentence whether friction peaks before sliding."""
+    ratio = found.get("stiction_ratio")
+    judged = next((one for one in verdict if one.parameter == "stiction_ratio"), None)
+    if ratio is None or judged is None:
+        because = "it was held in the fit" if judged is None else judged.because
+        return f"stiction peak: not identified ({because})"
+    figure = f"F_s / F_c = {ratio.value:.3g}, 95 % interval {ratio.low:.3g} to {ratio.high:.3g}"
+    if not judged.identifiable:
+        return f"stiction peak: this log can not tell ({judged.because})"
+    if ratio.high < NO_PEAK:
+        return f"stiction peak: none; {figure}"
+    if ratio.low > 1.0:
+        return f"stiction peak: seen; {figure}"
+    return f"stiction peak: this log can not tell; {figure}"

@@ -1,0 +1,229 @@
+"""From the channels of a file to a log: names, units, signs and time stamps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from breakaway.base.text import brief
+from breakaway.errors import LogError
+from breakaway.measure.logs.channel import Array, Channel, named
+from breakaway.measure.logs.log import Log
+from breakaway.measure.logs.mapping import ChannelMapping, Mapping
+from breakaway.measure.logs.names import file_unit, nearest, read_header, read_headers
+from breakaway.measure.logs.raw import RawChannel, RawFile
+from breakaway.measure.logs.units import Unit, si_symbol, stated, unit_of
+
+REQUIRED = {"position_m": "mm", "force_n": "N"}
+"""What a file without a mapping must state -> the unit that the remedy shows."""
+
+
+@dataclass(frozen=True)
+class Pick:
+    """A channel to build: its column, SI value = factor * value + offset, its own time column."""
+
+    channel: str
+    column: str
+    unit: str
+    factor: float
+    offset: float = 0.0
+    time: str | None = None
+
+
+def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
+    """Build the log of a file.
+
+    Raises
+    ------
+    LogError
+        A channel is missing, has no unit or no time stamps, or can not be read.
+
+    """
+    # Channel refuses what is not finite, by its row.
+    with named(raw.path.name), np.errstate(over="ignore", invalid="ignore"):
+        picks = _mapped(raw, mapping) if mapping.channels else _stated(raw)
+        times = _Times(raw, mapping)
+        channels = [_build(raw, pick, times) for pick in picks]
+    used = {pick.column for pick in picks} | times.used
+    return Log.from_channels(
+        channels,
+        source=raw.path,
+        sha256=digest,
+        ignored_columns=tuple(name for name in raw.names if name not in used),
+        history=(*raw.history, *(text for pick in picks for text in _notes(pick, raw))),
+    )
+
+
+def _build(raw: RawFile, pick: Pick, times: _Times) -> Channel:
+    found = column(raw, pick.column)
+    values = converted(found.values, pick.factor, pick.offset)
+    return Channel(
+        pick.channel, times.of(found, pick), values, from_name=pick.column, unit=pick.unit
+    )
+
+
+def converted(values: Array, factor: float, offset: float = 0.0) -> Array:
+    """Return factor * values + offset, read-only; the same array where nothing changes."""
+    if (factor, offset) == (1.0, 0.0):
+        return values
+    result = factor * values
+    result += offset
+    result.setflags(write=False)
+    return result
+
+
+def _notes(pick: Pick, raw: RawFile) -> list[str]:
+    """Say what was done to a channel beyond reading it."""
+    notes = []
+    if (pick.factor, pick.offset) != (1.0, 0.0):
+        offset = f" {pick.offset:+g}" if pick.offset else ""
+        unit = f" (in {brief(pick.unit)})" if pick.unit else ""
+        notes.append(f"{pick.channel} = {pick.factor:.9g} * '{brief(pick.column)}'{unit}{offset}")
+    word = read_header(pick.column, file_unit(raw, pick.column))
+    if word is not None and word.word == "friction_force" and pick.channel == "force_n":
+        notes.append(f"column '{brief(pick.column)}' is read as force_n")
+    return notes
+
+
+def _stated(raw: RawFile) -> list[Pick]:
+    """Choose the columns whose headers state channel and unit."""
+    picks: dict[str, Pick] = {}
+    for item in read_headers(raw):
+        if item.channel == "t_s":
+            continue
+        if item.channel in picks:
+            raise LogError(
+                f"columns '{brief(picks[item.channel].column)}' and '{brief(item.name)}' both give "
+                f"'{item.channel}'; one must: delete or rename the other, or write a mapping"
+            )
+        picks[item.channel] = Pick(
+            item.channel, item.name, item.unit.symbol, item.unit.factor, item.unit.offset
+        )
+    for channel, unit in REQUIRED.items():
+        if channel not in picks:
+            raise _missing(raw, channel, f"channels.{channel}", unit)
+    return list(picks.values())
+
+
+def _mapped(raw: RawFile, mapping: Mapping) -> list[Pick]:
+    """Choose the columns that a mapping names."""
+    picks = []
+    for channel, keys in mapping.channels.items():
+        name = place(raw, keys.from_)
+        if keys.scale is not None:
+            picks.append(
+                Pick(channel, name, keys.unit or "", keys.sign * keys.scale, time=keys.time)
+            )
+            continue
+        unit = _unit(raw, name, channel, keys)
+        factor = keys.sign * unit.factor
+        picks.append(
+            Pick(channel, name, unit.symbol, factor, keys.sign * unit.offset, time=keys.time)
+        )
+    return picks
+
+
+def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> Unit:
+    """Return the unit of a mapped column: of the mapping, else the file, else its name."""
+    if keys.unit is not None:
+        return unit_of(keys.unit, channel)
+    symbol = file_unit(raw, name)
+    if symbol:
+        return unit_of(symbol, channel)
+    header = read_header(name)
+    if header is not None and header.unit.symbol and stated(header.unit.symbol, channel):
+        return header.unit
+    raise LogError(
+        f"channel '{channel}': neither the file nor the name '{brief(name)}' states a unit; add it "
+        f'to the mapping, such as unit = "{si_symbol(channel)}"'
+    )
+
+
+class _Times:
+    """The time stamps of the channels; each time column is converted once and shared."""
+
+    def __init__(self, raw: RawFile, mapping: Mapping) -> None:
+        self.raw, self.mapping = raw, mapping
+        self.used: set[str] = set()
+        self.shared: dict[str, Array] = {}
+        self.headers: list[str] | None = None
+
+    def of(self, found: RawChannel, pick: Pick) -> Array:
+        """Return the stamps of a channel: of its mapping, else its own, else the file's."""
+        name = pick.time or self.mapping.time.from_
+        if name is None and found.t_s is not None:
+            return found.t_s
+        return self._column(place(self.raw, name) if name is not None else self._header())
+
+    def _column(self, name: str) -> Array:
+        if name not in self.shared:
+            self.used.add(name)
+            found = column(self.raw, name)
+            keys = ChannelMapping.parse({"from": name, "unit": self.mapping.time.unit})
+            unit = _unit(self.raw, name, "t_s", keys)
+            self.shared[name] = converted(found.values, unit.factor)
+        return self.shared[name]
+
+    def _header(self) -> str:
+        if self.headers is None:
+            self.headers = [one.name for one in read_headers(self.raw) if one.channel == "t_s"]
+        names = self.headers
+        if not names:
+            raise _missing(self.raw, "t_s", "time", "ms")
+        if len(names) > 1:
+            first, second = map(brief, names[:2])
+            raise LogError(
+                f"columns '{first}' and '{second}' both give 't_s'; one must: delete or "
+                f'rename the other, or write a mapping with time.from = "{first}"'
+            )
+        return names[0]
+
+
+def place(raw: RawFile, name: str) -> str:
+    """Return the full name of a column, which may be given without its group.
+
+    Raises
+    ------
+    LogError
+        There is no such column, or there are several.
+
+    """
+    if name in raw:
+        return name
+    ends = [full for full in raw.names if full.endswith((f"/{name}", f".{name}"))]
+    if len(ends) == 1:
+        return ends[0]
+    if ends:
+        raise LogError(
+            f"'{brief(name)}' may be {' or '.join(map(brief, ends[:5]))}; give the whole name"
+        )
+    raise LogError(f"column '{brief(name)}' is missing; {present(raw, name)}; correct `from`")
+
+
+def column(raw: RawFile, name: str) -> RawChannel:
+    """Return a column, or raise `LogError` with the reason why it can not be read."""
+    if name in raw.unreadable:
+        raise LogError(f"column '{brief(name)}'{_joint(raw.unreadable[name])}")
+    return raw.channels[name]
+
+
+def _joint(reason: str) -> str:
+    return f", {reason}" if reason.startswith("row ") else f": {reason}"
+
+
+def present(raw: RawFile, name: str) -> str:
+    """Name the columns of a file, and the one nearest to ``name``."""
+    near = nearest(name, raw.names)
+    found = f"the nearest present is '{brief(near)}', of " if near else "present are "
+    names = [brief(other) for other in raw.names[:20]]
+    more = ", ..." if len(raw.names) > 20 else ""
+    return found + (", ".join(names) + more if names else "none")
+
+
+def _missing(raw: RawFile, channel: str, key: str, unit: str) -> LogError:
+    return LogError(
+        f"column '{channel}' is missing; {present(raw, channel)}; name the column so, or write "
+        f"its name and unit into {raw.path.with_suffix('.toml').name}, such as: "
+        f'{key} = {{ from = "...", unit = "{unit}" }}'
+    )

@@ -1,0 +1,238 @@
+"""Read a log from an HDF5 file, which MATLAB 7.3 files are too."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from breakaway.base.reading import open_regular
+from breakaway.errors import LogError
+from breakaway.measure.logs.budget import Budget
+from breakaway.measure.logs.hdf5_types import is_opaque
+from breakaway.measure.logs.raw import DEFLATE_RATIO, RawFile, check_claim, guarded, need, no_vector
+
+DEEPEST_GROUP = 8
+MOST_OBJECTS = 10_000
+"""Limits on groups within groups, and on all groups and arrays of a file."""
+
+TEXT_CLASSES = ("char", "cell", "struct", "string", "function_handle")
+"""MATLAB classes whose arrays hold numbers that are none."""
+
+DEFLATE, SHUFFLE, FLETCHER, LZF = 1, 2, 3, 32000
+FILTERS = {DEFLATE: DEFLATE_RATIO, SHUFFLE: 1, FLETCHER: 1, LZF: 88}
+"""Filter that is read -> the most that it compresses. HDF5 would load the code of one that it does
+not know from a folder of plugins."""
+
+CHECKSUM = 4
+"""Bytes that Fletcher 32 adds to a chunk."""
+
+MATLAB_PLACES = ("#refs#", "#subsystem#")
+"""Groups in which MATLAB keeps the content of cells and objects."""
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """An array to read, or some members of a table."""
+
+    name: str
+    dataset: Any
+    members: tuple[str, ...] = ()
+
+
+@guarded("an HDF5 file")
+def read_hdf5(path: Path, budget: Budget) -> RawFile:
+    """Read the one-dimensional arrays of an HDF5 file, whose names are their paths.
+
+    The unit of an array is taken from its attribute ``unit`` or ``units``. The members of a
+    table are channels. No other file is opened: neither links, nor virtual arrays, nor external
+    storage, nor plugins for filters are followed.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    budget : Budget
+        What it may take.
+
+    Raises
+    ------
+    LogError
+        h5py is missing, the file is damaged, or takes more than it may.
+
+    """
+    return _read(path, budget, "/")
+
+
+@guarded("a MATLAB 7.3 file")
+def read_matlab_hdf5(path: Path, budget: Budget) -> RawFile:
+    """Read a MATLAB 7.3 file, in which a point joins a structure and its field."""
+    return _read(path, budget, ".")
+
+
+def _read(path: Path, budget: Budget, separator: str) -> RawFile:
+    h5py = need("h5py", "h5py", "hdf5", path, "HDF5")
+    raw = RawFile(path)
+    with open_regular(path) as stream, h5py.File(stream, "r") as file:
+        wanted = []
+        for name, dataset in _datasets(h5py, raw, file, separator):
+            reason = _elsewhere(dataset) or _no_numbers(h5py, dataset)
+            if reason:
+                raw.refuse(name, reason)
+            else:
+                wanted += _wanted(raw, name, dataset, separator)
+        for one in wanted:
+            _ask(raw.path, budget, one)
+        for one in wanted:
+            _add(h5py, raw, one, separator)
+    return raw
+
+
+def _datasets(h5py: Any, raw: RawFile, root: Any, separator: str) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
+    """Give all arrays by their paths, level by level; note what is not followed."""
+    seen = 0
+    level = [("", root)]
+    for depth in range(DEEPEST_GROUP):
+        below = []
+        for prefix, group in level:
+            for name in group:
+                seen += 1
+                if seen > MOST_OBJECTS:
+                    raise LogError(
+                        f"{raw.path.name}: holds more than {MOST_OBJECTS:,} objects; at most so "
+                        "many are read: export fewer"
+                    )
+                if name in MATLAB_PLACES:
+                    continue
+                link = group.get(name, getlink=True)
+                if not isinstance(link, h5py.HardLink):
+                    raw.refuse(prefix + name, _link(h5py, link))
+                    continue
+                item = group[name]
+                if isinstance(item, h5py.Dataset):
+                    yield prefix + name, item
+                elif not isinstance(item, h5py.Group):
+                    continue
+                elif depth + 1 < DEEPEST_GROUP:
+                    below.append((prefix + name + separator, item))
+                else:
+                    reason = f"lies deeper than {DEEPEST_GROUP} groups; move it up"
+                    raw.refuse(prefix + name, reason)
+        level = below
+
+
+def _link(h5py: Any, link: Any) -> str:  # noqa: ANN401
+    if isinstance(link, h5py.ExternalLink):
+        return "is a link to another file; links are not followed: name that file"
+    return "is a link; links are not followed: name what it leads to"
+
+
+def _elsewhere(dataset: Any) -> str:  # noqa: ANN401
+    """Say why reading an array would need more than the file, or nothing."""
+    plan = dataset.id.get_create_plist()
+    if plan.get_external_count():
+        return "is kept in another file (external storage), which is not opened: export its values"
+    if dataset.is_virtual:
+        return "is kept in other arrays (virtual), which are not opened: export its values"
+    filters = _filters(dataset)
+    for number in filters:
+        if number not in FILTERS or filters.count(number) > 1 or {DEFLATE, LZF} <= {*filters}:
+            return (
+                f"goes through filter {number} of HDF5; only deflate or LZF, shuffle and Fletcher "
+                "32 are read, each once: export it so, or without filters"
+            )
+    return ""
+
+
+def _filters(dataset: Any) -> list[int]:  # noqa: ANN401
+    plan = dataset.id.get_create_plist()
+    return [plan.get_filter(place)[0] for place in range(plan.get_nfilters())]
+
+
+def _no_numbers(h5py: Any, dataset: Any) -> str:  # noqa: ANN401
+    """Say why an array is no vector of real numbers, or nothing; members of tables come later."""
+    if is_opaque(h5py, dataset.id.get_type()):
+        return "is of opaque data; it must be real numbers"
+    if h5py.check_ref_dtype(dataset.dtype) is not None:
+        return "is of references to other places; it must be real numbers"
+    if _attribute(h5py, dataset, "MATLAB_class") in TEXT_CLASSES:
+        return "is text or a cell array; it must be a vector of real numbers"
+    if dataset.shape is None:
+        return "is empty; it must be a vector of real numbers"
+    kind = np.dtype(float) if dataset.dtype.names else dataset.dtype
+    return no_vector(kind, dataset.shape)
+
+
+def _wanted(raw: RawFile, name: str, dataset: Any, separator: str) -> list[_Wanted]:  # noqa: ANN401
+    """Return what to read of an array: itself, or the members of a table that are numbers."""
+    fields = dataset.dtype.fields
+    if fields is None:
+        return [_Wanted(name, dataset)]
+    members = []
+    for member, (kind, *_) in fields.items():
+        if reason := no_vector(kind, (1,)):
+            raw.refuse(name + separator + member, reason)
+        else:
+            members.append(member)
+    return [_Wanted(name, dataset, tuple(members))] if members else []
+
+
+def _ask(path: Path, budget: Budget, one: _Wanted) -> None:
+    """Ask for the memory of an array, which the file must be able to hold."""
+    dataset = one.dataset
+    claimed = dataset.size * dataset.dtype.itemsize
+    ratio = math.prod(FILTERS[number] for number in _filters(dataset))
+    check_claim(path, f"'{one.name}'", claimed, ratio * dataset.id.get_storage_size())
+    passing = 0 if dataset.dtype == np.float64 else claimed
+    if dataset.chunks is not None:
+        passing += _chunk_bytes(path, one.name, dataset)
+    budget.take(f"'{one.name}'", 8 * dataset.size * max(len(one.members), 1), passing)
+
+
+def _chunk_bytes(path: Path, name: str, dataset: Any) -> int:  # noqa: ANN401
+    """Return what the largest chunk of an array takes while it is unpacked.
+
+    HDF5 unpacks a chunk whole, whatever its size turns out to be.
+    """
+    most: int = math.prod(dataset.chunks) * dataset.dtype.itemsize
+    filters = _filters(dataset)
+    chunks: list[Any] = []
+    dataset.id.chunk_iter(chunks.append)
+    if DEFLATE in filters:
+        packed = [c for c in chunks if not c.filter_mask >> filters.index(DEFLATE) & 1]
+        for chunk in packed:
+            stored = dataset.id.read_direct_chunk(chunk.chunk_offset)[1]
+            inflate = zlib.decompressobj()
+            inflate.decompress(stored, most + CHECKSUM)
+            if not inflate.eof:
+                raise LogError(
+                    f"{path.name}: a chunk of '{name}' holds more or less than the {most} bytes "
+                    "that it claims; it is damaged: export the log again"
+                )
+    largest: int = max((chunk.size for chunk in chunks), default=0)
+    return max(most, largest * FILTERS[LZF] if LZF in filters else largest)
+
+
+def _add(h5py: Any, raw: RawFile, one: _Wanted, separator: str) -> None:  # noqa: ANN401
+    if one.members:
+        table = one.dataset.fields(list(one.members))[()]
+        for member in one.members:
+            raw.add(one.name + separator + member, table[member], None)
+        return
+    unit = _attribute(h5py, one.dataset, "unit") or _attribute(h5py, one.dataset, "units")
+    raw.add(one.name, one.dataset[()], None, unit)
+
+
+def _attribute(h5py: Any, dataset: Any, name: str) -> str:  # noqa: ANN401
+    """Return an attribute that is one text, or an empty one."""
+    if name not in dataset.attrs or is_opaque(h5py, dataset.attrs.get_id(name).get_type()):
+        return ""
+    value = dataset.attrs[name]
+    if isinstance(value, bytes):
+        return value.decode(errors="replace")
+    return value if isinstance(value, str) else ""

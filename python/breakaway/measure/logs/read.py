@@ -1,0 +1,131 @@
+"""Read a log file of any format."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from breakaway.errors import LogError
+from breakaway.measure.logs.assemble import assemble
+from breakaway.measure.logs.budget import Budget
+from breakaway.measure.logs.csv import read_csv
+from breakaway.measure.logs.detect import detect
+from breakaway.measure.logs.digest import digested
+from breakaway.measure.logs.emps import emps_layout, is_emps
+from breakaway.measure.logs.hdf5 import read_hdf5
+from breakaway.measure.logs.log import Log
+from breakaway.measure.logs.mapping import load_mapping
+from breakaway.measure.logs.mat import read_mat
+from breakaway.measure.logs.mcap import read_mcap
+from breakaway.measure.logs.mdf import read_mdf
+from breakaway.measure.logs.parquet import read_parquet
+from breakaway.measure.logs.raw import Reader
+from breakaway.measure.logs.tdms import read_tdms
+
+READERS: dict[str, Reader] = {
+    "parquet": read_parquet,
+    "mat": read_mat,
+    "hdf5": read_hdf5,
+    "tdms": read_tdms,
+    "mdf": read_mdf,
+    "mcap": read_mcap,
+    "emps": read_mat,
+}
+
+FORMATS = ("csv", *READERS)
+"""Names of the file formats. ``emps`` is the MATLAB file of the EMPS benchmark."""
+
+
+def read_log(
+    path: str | Path,
+    mapping: str | Path | Mapping[str, Any] | None = None,
+    format: str | None = None,
+    *,
+    memory_bytes: float | None = None,
+) -> Log:
+    r"""Read a measured log.
+
+    Columns whose header states what they are, with the unit, need no mapping: ``t_s``, ``x_m``,
+    ``Force [kN]``, ``time_ms``. Others are left out and listed in ``ignored_columns``. Values
+    are converted to the units of the channels; ``history`` lists each conversion.
+
+    A mapping names the columns and their units. In a TOML file beside the log, which is found
+    by itself (``motor.toml`` for ``motor.tdms``)::
+
+        [channels.position_m]
+        from = "Rig/Encoder"  # name in the file
+        unit = "mm"           # of the numbers in the file, unless file or name state it
+        sign = -1             # optional
+
+        [channels.force_n]
+        from = "vir"
+        unit = "V"
+        scale = 35.15         # optional: N per V; the unit is then free text
+
+        [time]                # where the channels have no stamps of their own
+        from = "t"
+        unit = "ms"
+
+    and optionally ``format = "tdms"``, ``time = "..."`` in a channel with a time column of its
+    own, and a table ``[csv]`` with ``delimiter``, ``decimal``, ``skip_rows``, ``units_row``.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    mapping : str, Path or mapping, optional
+        A TOML file, or its content as nested dictionaries; an empty one stands for none. By
+        default the file of the same name with the suffix ``.toml``, if it has a table
+        ``channels`` or ``csv``.
+    format : str, optional
+        One of `FORMATS`; by default as the file's first bytes, else its suffix, say.
+    memory_bytes : float, optional
+        Most memory that the content of the file may take; by default half of what is free. The
+        log takes up to as much again.
+
+    Returns
+    -------
+    Log
+
+    Raises
+    ------
+    LogError
+        The file or the mapping is missing or damaged, a package for the format is missing, a
+        channel is missing, has no unit or no stamps; without a mapping also, where time,
+        position or force are not found; the file takes more memory than it may, goes beyond
+        another limit, or changes while it is read. And as `Log` says.
+
+    Notes
+    -----
+    Not checked: whether the numbers are in the unit that header or mapping state. A MATLAB
+    file that holds ``t``, ``qm``, ``vir`` and ``gtau`` is read as one of the EMPS benchmark.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> rows = "".join(f"{k / 100},{k / 10},2.5,ok\n" for k in range(20))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "motor.csv"
+    ...     _ = path.write_text("t_s,position_mm,force_N,remark\n" + rows)
+    ...     log = read_log(path)
+    >>> log.rows, float(log.position_m[10]), log.ignored_columns, log.history
+    (20, 0.001, ('remark',), ("position_m = 0.001 * 'position_mm' (in mm)",))
+    >>> read_log("missing.csv")
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.LogError: missing.csv: there is no such file; check the path
+
+    """
+    path = Path(path)
+    budget = Budget.of(path, memory_bytes)
+    with digested(path) as digest:
+        rules, origin = load_mapping(mapping, path)
+        kind = format or rules.format or detect(path)
+        if kind not in FORMATS:
+            raise LogError(f"format '{kind}' is unknown; it must be one of {', '.join(FORMATS)}")
+        raw = read_csv(path, budget, rules.csv) if kind == "csv" else READERS[kind](path, budget)
+    if kind == "emps" or (kind == "mat" and not rules.channels and is_emps(raw)):
+        return assemble(*emps_layout(raw), digest)
+    log = assemble(raw, rules, digest)
+    return log.noted(f"channels as {origin} says") if origin else log

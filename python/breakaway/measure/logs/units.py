@@ -1,0 +1,163 @@
+"""Units of the numbers in a file, and the units that names of channels state."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from breakaway.base.text import brief
+from breakaway.errors import LogError
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit of a file: SI value = factor * value + offset."""
+
+    symbol: str
+    dimension: str
+    factor: float
+    offset: float = 0.0
+
+
+_FACTORS = {
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0},
+    "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254},
+    "speed": {"m/s": 1.0, "mm/s": 1e-3, "um/s": 1e-6, "in/s": 0.0254},
+    "acceleration": {"m/s^2": 1.0, "mm/s^2": 1e-3, "g": 9.80665},
+    "force": {
+        "N": 1.0,
+        "mN": 1e-3,
+        "uN": 1e-6,
+        "kN": 1e3,
+        "MN": 1e6,
+        "lbf": 4.4482216152605,
+        "kgf": 9.80665,
+    },
+    "pressure": {
+        "Pa": 1.0,
+        "mPa": 1e-3,
+        "hPa": 1e2,
+        "kPa": 1e3,
+        "MPa": 1e6,
+        "mbar": 1e2,
+        "bar": 1e5,
+        "psi": 6894.757293168361,
+    },
+    "voltage": {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "kV": 1e3},
+    "current": {"A": 1.0, "mA": 1e-3, "uA": 1e-6},
+    "ratio": {"1": 1.0, "%": 1e-2},
+}
+
+_UNITS = [
+    *(
+        Unit(symbol, dimension, factor)
+        for dimension, units in _FACTORS.items()
+        for symbol, factor in units.items()
+    ),
+    Unit("degC", "temperature", 1.0),
+    Unit("K", "temperature", 1.0, -273.15),
+]
+
+SUFFIXES = {
+    "m_per_s2": "acceleration",
+    "m_per_s": "speed",
+    "pa": "pressure",
+    "degc": "temperature",
+    "s": "time",
+    "m": "length",
+    "n": "force",
+    "v": "voltage",
+    "a": "current",
+    "1": "ratio",
+}
+"""What a channel's name ends with, after an underscore -> its dimension; the longest counts."""
+
+
+def dimension_of(channel: str) -> str:
+    """Return the dimension that the name of a channel states.
+
+    Raises
+    ------
+    LogError
+        The name is not lower case with a unit at its end.
+
+    Examples
+    --------
+    >>> dimension_of("velocity_m_per_s")
+    'speed'
+
+    """
+    for suffix, dimension in SUFFIXES.items():
+        if re.fullmatch(rf"[a-z][a-z0-9_]*_{suffix}", channel):
+            return dimension
+    raise LogError(
+        f"channel '{channel}': the name does not end with its unit; it must be lower case and "
+        f"end with one of {', '.join('_' + suffix for suffix in SUFFIXES)}, such as position_m"
+    )
+
+
+def si_symbol(channel: str) -> str:
+    """Return the unit in which a channel is kept, such as ``N`` for ``force_n``."""
+    dimension = dimension_of(channel)
+    return next(u.symbol for u in _UNITS if u.dimension == dimension)
+
+
+def unit_of(symbol: str, channel: str) -> Unit:
+    """Return the unit that a symbol means for a channel.
+
+    Raises
+    ------
+    LogError
+        No unit has this symbol, or it measures something else than the channel.
+
+    Examples
+    --------
+    >>> unit_of("µm", "position_m").factor
+    1e-06
+    >>> unit_of("mm", "force_n")
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.LogError: channel 'force_n': the unit 'mm' measures length, not force; it \
+must be one of N, mN, uN, kN, MN, lbf, kgf
+
+    """
+    dimension = dimension_of(channel)
+    known = ", ".join(u.symbol for u in _UNITS if u.dimension == dimension)
+    found = next((u for u in _UNITS if plain(u.symbol) == plain(symbol)), None)
+    if found is None:
+        raise LogError(
+            f"channel '{channel}': the unit '{brief(symbol)}' is unknown; it must be one of "
+            f"{known}; of any other unit, state the SI value of 1 as `scale`"
+        )
+    if found.dimension != dimension:
+        raise LogError(
+            f"channel '{channel}': the unit '{brief(symbol)}' measures {found.dimension}, not "
+            f"{dimension}; it must be one of {known}"
+        )
+    return found
+
+
+def stated(symbol: str, channel: str) -> Unit | None:
+    """Return the unit that a header or a file states for a channel, or None.
+
+    Upper and lower case count where they tell units apart (mN, MN), else they do not. None
+    stands for no such unit of the channel's dimension, and for one that is not certain.
+
+    Examples
+    --------
+    >>> stated("KN", "force_n").symbol, stated("mn", "force_n"), stated("m_s", "velocity_m_per_s")
+    ('kN', None, Unit(symbol='m/s', dimension='speed', factor=1.0, offset=0.0))
+
+    """
+    text = plain(symbol.replace("_per_", "/").replace("_", "/"))
+    units = [u for u in _UNITS if u.dimension == dimension_of(channel)]
+    exact = [u for u in units if plain(u.symbol) == text]
+    found = exact or [u for u in units if plain(u.symbol).lower() == text.lower()]
+    return found[0] if len(found) == 1 else None
+
+
+def plain(symbol: str) -> str:
+    """Return one spelling for all: ``m/s²``, ``m/s^2`` and ``m / s2`` are ``m/s2``."""
+    text = symbol.replace("\N{GREEK SMALL LETTER MU}", "u").replace("\N{MICRO SIGN}", "u")
+    text = text.replace("²", "2").replace("°", "deg")
+    return re.sub(r"[\s^*]", "", text)

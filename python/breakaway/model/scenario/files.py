@@ -1,0 +1,197 @@
+"""Scenarios in files: load, save, presets, schema."""
+
+from __future__ import annotations
+
+import difflib
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, TypeVar
+
+import tomli_w
+
+from breakaway.base.output import write_atomically
+from breakaway.base.reading import table_of, text_of
+from breakaway.errors import ScenarioError
+from breakaway.model.scenario.actuator import Piezo
+from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.model import Model
+from breakaway.model.scenario.population import PartPopulation
+from breakaway.model.scenario.scenario import Scenario
+
+AnyModel = TypeVar("AnyModel", bound=Model)
+
+PRESETS = files("breakaway.model.presets")
+
+
+def preset_names(folder: str = "") -> list[str]:
+    """Names of the presets that come with breakaway.
+
+    Parameters
+    ----------
+    folder : {"", "populations", "methods", "stacks"}, optional
+        Which presets: scenarios, where it is left out.
+
+    """
+    presets = PRESETS / folder if folder else PRESETS
+    return sorted(p.name.removesuffix(".toml") for p in presets.iterdir() if p.name[-5:] == ".toml")
+
+
+def load_scenario(source: str | Path) -> Scenario:
+    """Load a scenario: a preset by its name, or a TOML file by its path.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid; the message
+        names every such field.
+
+    Examples
+    --------
+    >>> load_scenario("paper_as_computed").joint.stiffness_n_per_m
+    36000000.0
+    >>> load_scenario("paper_as_computd")
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.ScenarioError: paper_as_computd: ... did you mean paper_as_computed?
+
+    """
+    return _load(Scenario, source, "")
+
+
+def load_population(source: str | Path) -> PartPopulation:
+    """Load a population of parts: a preset by its name, or a TOML file by its path.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, such as ``seized_parts``, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> load_population("seized_parts").duration_s
+    10.0
+
+    """
+    return _load(PartPopulation, source, "populations")
+
+
+def load_method(source: str | Path) -> Method:
+    """Load a way to free parts: a preset by its name, or a TOML file by its path.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, such as ``timed_impacts``, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> load_method("steady_feed").actuator.kind
+    'feed_axis'
+
+    """
+    return _load(Method, source, "methods")
+
+
+def load_stack(source: str | Path) -> Piezo:
+    """Load a piezo stack with its amplifier: a preset by its name, or a TOML file by its path.
+
+    Each preset says where its figures are from, and which of them are estimates.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, such as ``pi_p888_91_pd200``, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> stack = load_stack("pi_p888_91_pd200")
+    >>> round(stack.stiffness_n_per_m * stack.stroke_m)  # blocking force, N
+    3800
+
+    """
+    return _load(Piezo, source, "stacks")
+
+
+def _load(model: type[AnyModel], source: str | Path, folder: str) -> AnyModel:
+    if isinstance(source, str) and source in preset_names(folder):
+        text = PRESETS.joinpath(*folder.split(), f"{source}.toml").read_text(encoding="utf-8")
+        return parse_toml(model, text, source)
+    return parse_toml(model, _read(Path(source), preset_names(folder)), str(source))
+
+
+def parse_scenario(text: str, source: str) -> Scenario:
+    """Build a scenario from TOML; ``source`` names the text in errors."""
+    return parse_toml(Scenario, text, source)
+
+
+def parse_toml(model: type[AnyModel], text: str, source: str) -> AnyModel:
+    """Build a model from TOML; ``source`` names the text in errors.
+
+    Raises
+    ------
+    ScenarioError
+        It is not TOML, or a value is not valid; the message names every such field.
+
+    """
+    values = table_of(text, source, ScenarioError)
+    try:
+        return model.parse(values)
+    except ScenarioError as error:
+        raise ScenarioError(
+            f"{source}:\n{error}" if "\n" in str(error) else f"{source}: {error}"
+        ) from None
+
+
+def _read(path: Path, presets: list[str]) -> str:
+    near = difflib.get_close_matches(str(path), presets, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]}?" if near else f"presets: {', '.join(presets)}"
+    return text_of(path, ScenarioError, f"is neither a file nor a preset; {hint}")
+
+
+def scenario_toml(scenario: Scenario) -> str:
+    """The scenario as TOML. Floats are written so that they read back bit for bit."""
+    return tomli_w.dumps(scenario.model_dump(exclude_none=True))
+
+
+def save_scenario(scenario: Scenario, path: str | Path) -> None:
+    """Write the scenario as TOML, whole or not at all.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is written.
+    path : str or Path
+        The file; missing folders are made.
+
+    Raises
+    ------
+    OutputError
+        The file can not be written.
+
+    """
+    write_atomically(Path(path), scenario_toml(scenario).encode())
+
+
+def scenario_schema() -> dict[str, Any]:
+    """The JSON Schema of a scenario."""
+    return Scenario.model_json_schema()

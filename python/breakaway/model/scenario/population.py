@@ -1,0 +1,122 @@
+"""Parts nobody knows: what differs between them, and what is done to none of them."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from breakaway.model.scenario.distribution import Distribution
+from breakaway.model.scenario.model import Model, Name, Positive, Text
+from breakaway.model.scenario.sensor import Sensors, Watch
+
+Law = Literal["lugre", "elasto_plastic", "gms", "coulomb_stiction", "two_region"]
+LAWS: tuple[Law, ...] = ("lugre", "elasto_plastic", "gms", "coulomb_stiction", "two_region")
+"""Friction laws that a population can have."""
+QUANTITIES = (
+    "stiction_n",
+    "stiction_ratio",
+    "presliding_m",
+    "bristle_damping_ratio",
+    "stribeck_velocity_m_per_s",
+    "mass_kg",
+    "engagement_length_m",
+    "var",
+    "hold_s",
+)
+"""What differs from part to part, in the order in which it is drawn."""
+
+
+class PartDistributions(Model):
+    """How the parts of a population differ, in quantities that are independent of each other."""
+
+    stiction_n: Distribution
+    """F_s0, the force that breaks the joint loose at the seat, in N."""
+    stiction_ratio: Distribution
+    """F_s0 / F_c0."""
+    presliding_m: Distribution
+    """F_s0 / k_e: how far the bristles stretch before they slip, in m."""
+    bristle_damping_ratio: Distribution
+    """c / (2 sqrt(k_e m))."""
+    stribeck_velocity_m_per_s: Distribution
+    """v_s, in m/s."""
+    mass_kg: Distribution
+    """m, in kg."""
+    engagement_length_m: Distribution
+    """l_f, in m."""
+    var: Distribution
+    """Relative size of the disturbance, uniform and redrawn every hold_s."""
+    hold_s: Distribution
+    """Time between redraws of the disturbance, in s; at least one control period."""
+
+
+class Gentleness(Model):
+    """What a part may suffer at most."""
+
+    peak_over_breakaway_max: Positive
+    """Largest force over the part's own stiction force at the seat."""
+    jump_max_m: Positive
+    """Largest uncontrolled travel in one slip, in m."""
+    release_velocity_max_m_per_s: Positive
+    """Largest velocity at release, in m/s."""
+
+
+class LawNumbers(Model):
+    """What some friction laws need beside the quantities of a part."""
+
+    elastic_share: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.7
+    """Elasto-plastic: share of the steady deflection that is elastic."""
+    gms_elements: Annotated[int, Field(ge=4, le=10)] = 4
+    """Generalized Maxwell-slip: number of elements."""
+    gms_lag_s: Positive = 1e-3
+    """Generalized Maxwell-slip: F_s0 over the attraction: how friction lags while sliding, in s."""
+
+
+class PartPopulation(Model):
+    """A population of seized parts, and the rig's clock and sensors that all methods share.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> population = bk.load_population("seized_parts")
+    >>> round(population.nominal["stiction_n"], 1)
+    821.6
+
+    """
+
+    name: Name
+    """A name for tables and figures."""
+    description: Text = ""
+    """What the population is."""
+    parts: PartDistributions
+    """How its parts differ."""
+    laws: LawNumbers = LawNumbers()
+    """What some friction laws need beside."""
+    disturbance_acts_on: Literal["joint_force", "friction_level"] = "friction_level"
+    """What the disturbance multiplies: the friction level alone leaves a stuck part at rest."""
+    duration_s: Positive = 10.0
+    """Time that a method has, in s."""
+    control_period_s: Positive = 5e-5
+    """T_s, in s."""
+    one_sample_delay: bool = True
+    """Whether a command takes effect one period after its sample."""
+    sensors: Sensors = Sensors()
+    """What controllers see through."""
+    watch: Watch | None = None
+    """What stops a controller whose sensors can not be right."""
+    gentle: Gentleness = Gentleness(
+        peak_over_breakaway_max=1.5, jump_max_m=0.5e-3, release_velocity_max_m_per_s=0.3
+    )
+    """What counts as gentle."""
+    strict: Gentleness = Gentleness(
+        peak_over_breakaway_max=1.25, jump_max_m=0.25e-3, release_velocity_max_m_per_s=0.1
+    )
+    """What counts as strictly gentle."""
+
+    @cached_property
+    def nominal(self) -> dict[str, float]:
+        """The part whose quantities are all at their medians: all that controllers are told."""
+        half = np.array([0.5])
+        return {name: float(getattr(self.parts, name).quantile(half)[0]) for name in QUANTITIES}

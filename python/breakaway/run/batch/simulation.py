@@ -1,0 +1,200 @@
+"""Simulate many extractions at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import BaseModel
+
+from breakaway import _core
+from breakaway.base.threads import thread_count
+from breakaway.errors import StudyError
+from breakaway.model.scenario.distribution import Distribution
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.batch.batch import Batch
+from breakaway.run.batch.columns import (
+    check_paths,
+    check_values,
+    core_columns,
+    with_nominal_controller,
+)
+from breakaway.run.batch.draw import Design, draw_columns
+from breakaway.run.finished import RunMetrics
+from breakaway.run.resolution import check_scenario
+
+METRICS = (*(field.name for field in fields(RunMetrics)), "outcome")
+"""What can be asked of each run."""
+RUNS_MAX = 2**32
+"""Most runs of one batch."""
+
+
+def simulate_many(
+    scenario: Scenario,
+    runs: int,
+    *,
+    vary: Mapping[str, Distribution | ArrayLike] | None = None,
+    design: Design = "random",
+    metrics: Sequence[str] | None = None,
+    first_run: int = 0,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    instructions: str | None = None,
+) -> Batch:
+    """Simulate many extractions: the same scenario, other draws, and other parts.
+
+    Every run has the bits of ``simulate(batch.scenario_of(i), run_index=first_run + i)``, on any
+    number of threads. Runs do not wait for the interpreter. A controller that is designed by
+    pole placement is designed for the scenario as it stands, and does not know what the numbers
+    of a part are; what else a scenario leaves open (residual friction, bounds) follows each part.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What the runs have in common. Its trace is not recorded; see `Batch.replay`.
+    runs : int
+        How many.
+    vary : mapping, optional
+        What differs from run to run beside the draws of the disturbance, by dotted path: a
+        distribution, or one value for each run.
+    design : {"random", "sobol", "latin_hypercube"}, optional
+        How distributions are drawn from.
+    metrics : sequence of str, optional
+        What is wanted of each run: names of `RunMetrics`, and ``outcome``. Left out:
+        everything. What is not wanted takes no time. The metrics of a run that diverged
+        are those until it did.
+    first_run : int, optional
+        Number of the first run among the runs of the scenario's seed.
+    threads : int, optional
+        Left out: one for each processor.
+    progress : callable, optional
+        Called about 20 times a second with the runs done and all runs. What it raises ends the
+        batch.
+    instructions : str, optional
+        Instructions to compute with, one of ``breakaway._core.instructions()``. Left out: the
+        fastest. The results are the same bits.
+
+    Returns
+    -------
+    Batch
+
+    Raises
+    ------
+    StudyError
+        What is to vary, a metric or a number of runs is not valid, before anything runs.
+    ScenarioError
+        It is no scenario, or the controller can not be designed for this joint.
+    KeyboardInterrupt
+        Ctrl-C.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> scenario = bk.load_scenario("paper_as_computed").with_({"disturbance.var": 0.05})
+    >>> batch = bk.simulate_many(
+    ...     scenario,
+    ...     runs=64,
+    ...     vary={"joint.stiction_n": bk.LogUniform(low=400.0, high=500.0)},
+    ...     metrics=["iae_m_s", "outcome"],
+    ... )
+    >>> int((batch["outcome"] == "released").sum())
+    64
+
+    """
+    check_scenario(scenario)
+    names = _wanted(metrics)
+    count = _whole("runs", runs, 1, RUNS_MAX)
+    first = _whole("first_run", first_run, 0, 2**63)
+    workers = thread_count(threads)
+    if instructions not in (None, *_core.instructions()):
+        raise StudyError(
+            f"instructions: {instructions!r} is not one of {', '.join(_core.instructions())}"
+        )
+    nominal = with_nominal_controller(scenario)
+    check_paths(nominal, vary or {})
+    columns = _columns(nominal, vary or {}, range(first, first + count), design)
+    check_values(nominal, columns, first)
+    run_index = np.arange(first, first + count, dtype=np.uint64)
+    tell = None if progress is None else lambda done: progress(done, count)
+    return run_columns(nominal, run_index, columns, names, workers, tell, instructions)
+
+
+def run_columns(
+    nominal: Scenario,
+    run_index: NDArray[np.uint64],
+    columns: Mapping[str, NDArray[np.float64]],
+    names: Sequence[str],
+    threads: int,
+    tell: Callable[[int], None] | None = None,
+    instructions: str | None = None,
+) -> Batch:
+    """Run any runs of a scenario whose controller is designed, each with its values; unchecked."""
+    shared, varied = core_columns(nominal, columns)
+    for column in (run_index, *columns.values()):
+        column.setflags(write=False)
+    figures, codes = _core.run_many(
+        shared,
+        run_index,
+        [(place, np.ascontiguousarray(column)) for place, column in varied],
+        [name for name in names if name != "outcome"],
+        "outcome" in names,
+        threads,
+        instructions or _core.instructions()[0],
+        tell or (lambda _done: None),
+    )
+    return Batch(
+        scenario=nominal,
+        run_index=run_index,
+        varied=MappingProxyType(dict(columns)),
+        metrics=MappingProxyType({name: np.frombuffer(v) for name, v in figures.items()}),
+        outcome_codes=np.frombuffer(codes, dtype=np.uint8) if "outcome" in names else None,
+    )
+
+
+def _wanted(metrics: Sequence[str] | None) -> Sequence[str]:
+    if metrics is None:
+        return METRICS
+    if not isinstance(metrics, Sequence) or isinstance(metrics, str) or not metrics:
+        raise StudyError(f"metrics: {metrics!r} is not a list of names; give some of {METRICS}")
+    for name in metrics:
+        if name not in METRICS:
+            raise StudyError(f"metrics: {name!r} is not one of {', '.join(METRICS)}")
+    return tuple(dict.fromkeys(metrics))
+
+
+def _whole(name: str, value: int, low: int, high: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value < high:
+        raise StudyError(f"{name}: {value!r} is not a whole number >= {low} and < {high}")
+    return value
+
+
+def _columns(
+    scenario: Scenario,
+    vary: Mapping[str, Distribution | ArrayLike],
+    runs: range,
+    design: Design,
+) -> dict[str, NDArray[np.float64]]:
+    """Give one column for each path, in the order of ``vary``."""
+    distributions = {path: d for path, d in vary.items() if isinstance(d, BaseModel)}
+    drawn = draw_columns(distributions, runs, seed=scenario.seed, design=design)
+    return {
+        path: drawn[path] if path in drawn else _given(path, values, len(runs))
+        for path, values in vary.items()
+    }
+
+
+def _given(path: str, values: object, count: int) -> NDArray[np.float64]:
+    try:
+        column = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise StudyError(
+            f"vary[{path!r}]: {values!r} is neither a distribution nor numbers"
+        ) from None
+    if column.shape != (count,):
+        raise StudyError(
+            f"vary[{path!r}]: has the shape {column.shape}; give one value for each of {count} runs"
+        )
+    return column

@@ -1,0 +1,221 @@
+"""Make every number of a scenario explicit, and hand it to the core."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, TypeVar
+
+from breakaway.design.pole_placement import pole_placement, residual_n
+from breakaway.errors import ScenarioError
+from breakaway.model.scenario.actuator import ForceActuator
+from breakaway.model.scenario.controller import (
+    AnyController,
+    FmVibration,
+    Gains,
+    PidSettings,
+    PolePlacement,
+    TwoStep,
+)
+from breakaway.model.scenario.joint import AnyJoint, CoulombStiction, ElastoPlastic, Gms
+from breakaway.model.scenario.model import Model
+from breakaway.model.scenario.scenario import Scenario
+
+AnyPart = TypeVar("AnyPart", bound=Model)
+
+
+def check_scenario(given: object) -> None:
+    """Refuse what is no scenario, such as the name of a preset."""
+    if not isinstance(given, Scenario):
+        raise ScenarioError(
+            f"scenario: {given!r} is not a Scenario; load_scenario gives that of a preset or a file"
+        )
+
+
+def resolve(scenario: Scenario) -> Scenario:
+    """Replace what a scenario leaves open by numbers: gains, residual force, limits.
+
+    The result runs bit-identically to the scenario, and on its own: designed gains stay as they
+    are when its joint is changed, as a controller does that does not know its part.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is resolved; it does not change.
+
+    Raises
+    ------
+    ScenarioError
+        It is no scenario, or the controller can not be designed for this joint.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> bk.resolve(bk.load_scenario("paper_as_computed")).controller.gains.kind
+    'given'
+
+    """
+    check_scenario(scenario)
+    joint, limits = scenario.joint, scenario.limits
+    explicit_joint = joint.model_copy(
+        update={"residual_n": residual_n(joint, scenario.part.mass_kg)}
+    )
+    explicit_limits = limits.model_copy(
+        update={
+            "diverged_error_m": joint.engagement_length_m / 2
+            if limits.diverged_error_m is None
+            else limits.diverged_error_m,
+            "diverged_force_n": 20 * joint.stiction_n
+            if limits.diverged_force_n is None
+            else limits.diverged_force_n,
+            "breakaway_travel_m": _breakaway_travel_m(joint)
+            if limits.breakaway_travel_m is None
+            else limits.breakaway_travel_m,
+            "contact_force_n": _contact_force_n(scenario)
+            if limits.contact_force_n is None
+            else limits.contact_force_n,
+        }
+    )
+    return scenario.model_copy(
+        update={
+            "joint": explicit_joint,
+            "limits": explicit_limits,
+            "controller": with_gains(scenario),
+        }
+    )
+
+
+def _contact_force_n(scenario: Scenario) -> float:
+    """What is behind a lag fades, and is never quite zero."""
+    actuator = scenario.actuator
+    return 1e-3 * actuator.force_max_n if isinstance(actuator, ForceActuator) else 0.0
+
+
+def _breakaway_travel_m(joint: AnyJoint) -> float:
+    """Twice what bristles can stretch; a rigid joint is loose once it has moved at all."""
+    if isinstance(joint, CoulombStiction):
+        return 1e-6 * joint.engagement_length_m
+    return 2 * joint.stiction_n / joint.stiffness_n_per_m
+
+
+def with_gains(scenario: Scenario) -> AnyController:
+    """Give the controller with its gains as numbers, if it has any."""
+    return _with_gains(scenario.controller, scenario)
+
+
+def _with_gains(part: AnyPart, scenario: Scenario) -> AnyPart:
+    """Give a controller, or a part of one, with its gains as numbers."""
+    update: dict[str, object] = {}
+    if isinstance(part, PidSettings):
+        update["gains"] = given_gains(part.gains, scenario)
+    elif isinstance(part, FmVibration):
+        update["pid"] = _with_gains(part.pid, scenario)
+    elif isinstance(part, TwoStep):
+        update["breakaway"] = _with_gains(part.breakaway, scenario)
+        update["vibration"] = _with_gains(part.vibration, scenario)
+    return part.model_copy(update=update) if update else part
+
+
+def given_gains(gains: Gains | PolePlacement, scenario: Scenario) -> Gains:
+    """Give the gains as numbers, designed for the scenario's own joint where they are designed."""
+    if isinstance(gains, Gains):
+        return gains
+    total = pole_placement(
+        scenario.joint,
+        mass_kg=scenario.part.mass_kg,
+        settling_time_s=gains.settling_time_s,
+        damping_ratio=gains.damping_ratio,
+        pole_per_s=gains.pole_per_s,
+        static_share=gains.static_share,
+    ).total
+    return Gains(kp_n_per_m=total.kp, ki_n_per_m_s=total.ki, kd_n_s_per_m=total.kd)
+
+
+def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
+    """Values of a resolved scenario under the names of the core."""
+    values = resolved.model_dump(warnings=False)  # a batch puts columns where numbers are
+    timing, limits = values["timing"], values["limits"]
+    joint = _core_joint(resolved.joint, values["joint"])
+    infinite = float("inf")
+    controller = values["controller"]
+    _name_as_the_core(values)
+    for pid in _pid_tables(controller):
+        del pid["gains"]["kind"]
+        _leave_out_zero(pid, "derivative_filter_s")
+    disturbance = values["disturbance"]
+    law = {"kind": disturbance.pop("law")}
+    if "bandwidth_hz" in disturbance:
+        law["bandwidth_hz"] = disturbance.pop("bandwidth_hz")
+    del timing["duration_s"]
+    release_position_m = resolved.joint.engagement_length_m - limits.pop("release_tolerance_m")
+    return {
+        "extraction": {
+            "joint": joint,
+            "part": values["part"],
+            "reference": values["reference"],
+            "disturbance": {"law": law, **disturbance},
+            "actuator": values["actuator"],
+            "sensors": values["sensors"],
+            "watch": values["watch"],
+            "controller": controller,
+            "timing": timing,
+        },
+        "limits": {name: infinite if v is None else v for name, v in limits.items()}
+        | {"release_position_m": release_position_m},
+        "samples": resolved.samples,
+        "seed": resolved.seed,
+        "run": run,
+        "trace_every": resolved.trace.every_samples,
+    }
+
+
+def _name_as_the_core(values: dict[str, Any]) -> None:
+    """Sensors of the core have no units of their own; what is left out of a watch is infinite."""
+    for sensor in (values["sensors"] or {}).values():
+        for name in ("noise_rms", "quantum"):
+            unit = next(suffix for suffix in ("_m", "_n") if f"{name}{suffix}" in sensor)
+            sensor[name] = sensor.pop(f"{name}{unit}")
+    watch = values["watch"]
+    if watch and watch["frozen_max_s"] is None:
+        watch["frozen_max_s"] = float("inf")
+
+
+def core_joint(joint: AnyJoint) -> dict[str, Any]:
+    """Give a resolved joint as the core takes it.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> core_joint(bk.resolve(bk.load_scenario("paper_as_computed")).joint)["law"]
+    'lugre'
+
+    """
+    return _core_joint(joint, joint.model_dump())
+
+
+def _core_joint(joint: AnyJoint, values: dict[str, Any]) -> dict[str, Any]:
+    """Nest what the core nests: the laws that build on LuGre hold its numbers in a table."""
+    _leave_out_zero(values, "viscous_n_s_per_m")
+    if isinstance(joint, ElastoPlastic):
+        own = {"elastic_share": values.pop("elastic_share")}
+    elif isinstance(joint, Gms):
+        del values["stiffness_shares"], values["level_shares"]
+        own = {name: values.pop(name) for name in ("elements", "attraction_n_per_s")}
+        own["stiffness_shares"], own["level_shares"] = joint.all_shares()
+    else:
+        return values
+    return {"law": values.pop("law"), "friction": values, **own}
+
+
+def _leave_out_zero(values: dict[str, Any], name: str) -> None:
+    """Say that there is none, where it is a number and zero: the core is faster without."""
+    if isinstance(values.get(name), float) and values[name] == 0.0:
+        values[name] = None
+
+
+def _pid_tables(controller: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Every table of a controller that is a PID, however deep."""
+    if "gains" in controller:
+        yield controller
+    for value in controller.values():
+        if isinstance(value, dict):
+            yield from _pid_tables(value)

@@ -1,0 +1,146 @@
+"""Parts of a population as scenarios: which numbers they set, and the scenario they share."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from breakaway.errors import StudyError
+from breakaway.model.scenario.distribution import Distribution
+from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.population import LAWS, QUANTITIES, Law, PartPopulation
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.batch import draw_columns
+from breakaway.run.resolution import with_gains
+
+Array = NDArray[np.float64]
+
+STEP_RULE = 0.3
+"""Longest step over sqrt(mass / stiffness): that of a scenario."""
+
+
+def draw_parts(population: PartPopulation, runs: range, *, seed: int) -> dict[str, Array]:
+    """Draw the quantities of some parts. A part is a function of the seed and its number.
+
+    Parameters
+    ----------
+    population : PartPopulation
+        How parts differ.
+    runs : range
+        Numbers of the parts.
+    seed : int
+        Seed of the draws.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> parts = bk.draw_parts(bk.load_population("seized_parts"), range(3), seed=0)
+    >>> bool((parts["stiction_ratio"] >= 1.1).all())
+    True
+
+    """
+    vary: dict[str, Distribution] = {name: getattr(population.parts, name) for name in QUANTITIES}
+    return draw_columns(vary, runs, seed=seed)
+
+
+def part_columns(
+    population: PartPopulation, method: Method, law: Law, parts: dict[str, Array]
+) -> dict[str, Array]:
+    """Give the numbers of a scenario that parts set, by dotted path."""
+    stiction = parts["stiction_n"]
+    columns = {
+        "joint.stiction_n": stiction,
+        "joint.coulomb_n": stiction / parts["stiction_ratio"],
+        "joint.engagement_length_m": parts["engagement_length_m"],
+        "part.mass_kg": parts["mass_kg"],
+        "disturbance.var": parts["var"],
+        "disturbance.hold_s": parts["hold_s"],
+        "limits.diverged_error_m": 10.0 * parts["engagement_length_m"],
+        "limits.diverged_force_n": 1e3 * stiction,
+        "limits.breakaway_travel_m": 2.0 * parts["presliding_m"],
+    }
+    if law != "two_region":
+        columns["joint.stribeck_velocity_m_per_s"] = parts["stribeck_velocity_m_per_s"]
+    if law != "coulomb_stiction":
+        stiffness = stiction / parts["presliding_m"]
+        columns["joint.stiffness_n_per_m"] = stiffness
+        columns["joint.damping_n_s_per_m"] = (
+            2.0 * parts["bristle_damping_ratio"] * np.sqrt(stiffness * parts["mass_kg"])
+        )
+    if law == "gms":
+        columns["joint.attraction_n_per_s"] = stiction / population.laws.gms_lag_s
+    return columns | method.told(parts["engagement_length_m"])
+
+
+def steps_per_period(population: PartPopulation, parts: dict[str, Array]) -> NDArray[np.int64]:
+    """Give the integration steps of each part in a control period.
+
+    As many as a scenario asks for, rounded up to 1, 2, 3, 4, 6, 8, 12, ..., so that there are few
+    groups of equal steps.
+    """
+    stiffness = parts["stiction_n"] / parts["presliding_m"]
+    longest_s = STEP_RULE * np.sqrt(parts["mass_kg"] / stiffness)
+    needed = np.ceil(population.control_period_s / longest_s * (1.0 - 1e-9))
+    grades = np.unique([grade * 2**n for n in range(17) for grade in (1, 3)])
+    return grades[np.searchsorted(grades, needed)]
+
+
+def scenario_of(
+    population: PartPopulation, method: Method, law: Law, *, seed: int, steps: int
+) -> Scenario:
+    """Give the scenario that the parts of a population share: a method before the nominal part.
+
+    Gains by pole placement are designed for that part, and stay.
+    """
+    if law not in LAWS:
+        raise StudyError(f"law: {law!r} is not one of {', '.join(LAWS)}")
+    nominal = {name: np.array([value]) for name, value in population.nominal.items()}
+    reference = method.reference or {
+        "kind": "ramp",
+        "distance_m": population.nominal["engagement_length_m"],
+        "duration_s": population.duration_s,
+    }
+    values = {
+        "name": method.name,
+        "description": f"On {population.name}, {law}",
+        "seed": seed,
+        "joint": {"law": law, **_law_numbers(population, law)},
+        "part": {},
+        "reference": reference if isinstance(reference, dict) else reference.model_dump(),
+        "disturbance": {"law": "uniform", "acts_on": population.disturbance_acts_on},
+        "actuator": method.actuator.model_dump(),
+        "sensors": population.sensors.model_dump(),
+        "watch": None if population.watch is None else population.watch.model_dump(),
+        "controller": method.controller.model_dump(),
+        "timing": {
+            "duration_s": population.duration_s,
+            "control_period_s": population.control_period_s,
+            "one_sample_delay": population.one_sample_delay,
+            "steps_per_period": max(steps, int(steps_per_period(population, nominal)[0])),
+        },
+        "limits": {"after_release_s": 0.0, "release_tolerance_m": 0.0},
+        "trace": {"every_samples": 1},
+    }
+    for path, column in part_columns(population, method, law, nominal).items():
+        _put(values, path, float(column[0]))
+    scenario = Scenario.parse(values)
+    timing = scenario.timing.model_copy(update={"steps_per_period": steps})
+    return scenario.model_copy(update={"controller": with_gains(scenario), "timing": timing})
+
+
+def _law_numbers(population: PartPopulation, law: Law) -> dict[str, object]:
+    if law == "elasto_plastic":
+        return {"elastic_share": population.laws.elastic_share}
+    if law == "gms":
+        return {"elements": population.laws.gms_elements}
+    return {}
+
+
+def _put(values: dict[str, object], path: str, value: float) -> None:
+    *parents, last = path.split(".")
+    for name in parents:
+        inner = values.get(name)
+        if not isinstance(inner, dict):
+            raise StudyError(f"knows: {path!r} is not a number of the method")
+        values = inner
+    values[last] = value

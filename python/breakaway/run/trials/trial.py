@@ -1,0 +1,183 @@
+"""One method on many parts: what became of each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from breakaway.base.equality import ByValue
+from breakaway.base.threads import thread_count
+from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.population import Gentleness, Law, PartPopulation
+from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.batch import run_columns
+from breakaway.run.finished import Run
+from breakaway.run.trials.parts import draw_parts, part_columns, scenario_of, steps_per_period
+
+Array = NDArray[np.float64]
+
+TRIAL_METRICS = (
+    "time_to_release_s",
+    "time_to_breakaway_s",
+    "peak_force_n",
+    "peak_over_breakaway",
+    "largest_jump_m",
+    "release_velocity_m_per_s",
+    "largest_impact_work_j",
+    "impulse_n_s",
+    "impacts",
+    "saturation_time_s",
+    "rms_current_a",
+    "stack_cycles",
+    "stack_loss_w",
+    "stack_tension_n",
+    "stop_reason",
+    "final_position_m",
+)
+"""What is recorded of each part."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial(ByValue):
+    """A method on parts of a population, as columns: one value for each part."""
+
+    population: PartPopulation
+    """Where the parts are from."""
+    method: Method
+    """How they were freed."""
+    law: Law
+    """The friction law of their joints."""
+    seed: int
+    """Seed of parts, disturbances and noise."""
+    runs: range
+    """Numbers of the parts."""
+    parts: Mapping[str, Array]
+    """The parts' quantities."""
+    metrics: Mapping[str, Array]
+    """What became of them. What did not happen is not a number."""
+
+    @property
+    def released(self) -> NDArray[np.bool_]:
+        """Whether each part is free."""
+        return np.isfinite(self.metrics["time_to_release_s"])
+
+    def within(self, limits: Gentleness) -> NDArray[np.bool_]:
+        """Whether each part is free and suffered no more than the limits.
+
+        Parameters
+        ----------
+        limits : Gentleness
+            What it may suffer, such as ``population.strict``.
+
+        """
+        return np.asarray(
+            self.released
+            & (self.metrics["peak_over_breakaway"] <= limits.peak_over_breakaway_max)
+            & (self.metrics["largest_jump_m"] <= limits.jump_max_m)
+            & (self.metrics["release_velocity_m_per_s"] <= limits.release_velocity_max_m_per_s)
+        )
+
+    def scenario(self, i: int) -> Scenario:
+        """Give the scenario of the part in row ``i``, checked.
+
+        Parameters
+        ----------
+        i : int
+            Row of the part.
+
+        """
+        row = {name: values[i : i + 1] for name, values in self.parts.items()}
+        steps = int(steps_per_period(self.population, row)[0])
+        base = scenario_of(self.population, self.method, self.law, seed=self.seed, steps=steps)
+        columns = part_columns(self.population, self.method, self.law, row)
+        return base.with_({path: float(values[0]) for path, values in columns.items()})
+
+    def replay(self, i: int, *, trace_every: int = 1) -> Run:
+        """Simulate the part in row ``i`` again, with its trace; its metrics are the same bits.
+
+        Parameters
+        ----------
+        i : int
+            Row of the part.
+        trace_every : int, optional
+            Every how many samples the trace keeps a row.
+
+        """
+        from breakaway.run.simulation import simulate
+
+        scenario = self.scenario(i).with_({"trace.every_samples": trace_every})
+        return simulate(scenario, run_index=self.runs[i])
+
+
+def run_trial(
+    population: PartPopulation,
+    method: Method,
+    *,
+    law: Law = "lugre",
+    runs: range,
+    seed: int,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Trial:
+    """Try a method on parts of a population.
+
+    Parts go through the step in groups that need the same integration step, longest guides first;
+    the results do not depend on it, nor on threads.
+
+    Parameters
+    ----------
+    population : PartPopulation
+        Where the parts are from.
+    method : Method
+        How they are freed.
+    law : str, optional
+        The friction law of their joints.
+    runs : range
+        Numbers of the parts: the same numbers and seed are the same parts for every method.
+    seed : int
+        Seed of parts, disturbances and noise.
+    threads : int, optional
+        Left out: one for each processor.
+    progress : callable, optional
+        Called about 20 times a second with the parts done and all parts. What it raises ends the
+        trial.
+
+    Examples
+    --------
+    >>> import breakaway as bk
+    >>> population, method = bk.load_population("seized_parts"), bk.load_method("steady_feed")
+    >>> trial = bk.run_trial(population, method, runs=range(8), seed=1)
+    >>> int(trial.released.sum())
+    8
+
+    """
+    workers = thread_count(threads)
+    parts = draw_parts(population, runs, seed=seed)
+    steps = steps_per_period(population, parts)
+    metrics = {name: np.full(len(runs), np.nan) for name in TRIAL_METRICS}
+    done = 0
+
+    def tell(count: int) -> None:
+        if progress:
+            progress(done + count, len(runs))
+
+    for needed in np.unique(steps)[::-1]:
+        rows = np.flatnonzero(steps == needed)
+        rows = rows[np.argsort(-parts["engagement_length_m"][rows], kind="stable")]
+        group = {name: values[rows] for name, values in parts.items()}
+        shared = scenario_of(population, method, law, seed=seed, steps=int(needed))
+        batch = run_columns(
+            shared,
+            np.asarray(runs.start + rows, dtype=np.uint64),
+            part_columns(population, method, law, group),
+            TRIAL_METRICS,
+            workers,
+            tell,
+        )
+        for name in TRIAL_METRICS:
+            metrics[name][rows] = batch.metrics[name]
+        done += len(rows)
+    return Trial(population, method, law, seed, runs, parts, metrics)
