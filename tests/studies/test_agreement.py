@@ -10,7 +10,7 @@ from breakaway.ask.studies import load_study, open_study, run_study
 from breakaway.ask.studies.agreement import bisected, narrowed
 from breakaway.ask.studies.agreement_study import joint_under
 from breakaway.ask.studies.files import parse_study
-from breakaway.ask.studies.running import plan_of
+from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.statistics import mcnemar
 from breakaway.ask.studies.verdicts import compared, compared_shares, direction_of, verdict_of
 from breakaway.cli.app import app

@@ -16,7 +16,7 @@ from breakaway.ask.studies import load_study, open_study, run_study
 from breakaway.ask.studies.files import parse_study
 from breakaway.ask.studies.manifest import identity_of
 from breakaway.ask.studies.pieces import DIGESTS, Pieces
-from breakaway.ask.studies.running import plan_of
+from breakaway.ask.studies.plans import plan_of
 from breakaway.errors import BreakawayError, OutputError, StudyError
 
 SCRIPT = """

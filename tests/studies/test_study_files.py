@@ -9,8 +9,8 @@ import tomli_w
 import breakaway as bk
 from breakaway.ask.studies import load_study, run_study
 from breakaway.ask.studies.files import parse_study
+from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.points import Point
-from breakaway.ask.studies.running import plan_of
 from breakaway.errors import StudyError
 
 SWEEP = """

@@ -16,6 +16,7 @@ from breakaway.ask.studies.manifest import MANIFEST, kind_of, read_manifest
 from breakaway.ask.studies.part_files import part_name, parts_in
 from breakaway.ask.studies.parts import part_schema
 from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.study import Study
 from breakaway.errors import StudyError
 from breakaway.run.batch.batch import as_pandas
@@ -156,7 +157,6 @@ class StudyResult:
             There is no such run among the finished parts.
 
         """
-        from breakaway.ask.studies.running import plan_of
         from breakaway.run.simulation import simulate
 
         fields = import_module("pyarrow.dataset").field

@@ -10,31 +10,22 @@ from typing import Any
 import tomli_w
 
 from breakaway._core import __version__
-from breakaway.ask.studies.agreement import AgreementPlan
-from breakaway.ask.studies.agreement_study import AgreementStudy
-from breakaway.ask.studies.compare import ComparePlan
 from breakaway.ask.studies.folder import SUMMARY, as_csv, as_json, prepared
 from breakaway.ask.studies.manifest import manifest_of
 from breakaway.ask.studies.part_files import found, part_name, remove_beyond
 from breakaway.ask.studies.parts import Parts, Piece, label_types, laid_out
 from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.studies.plan import Plan, PointRuns, Summary
+from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.points import Point
 from breakaway.ask.studies.result import StudyResult, open_study
-from breakaway.ask.studies.robustness import RobustnessPlan
-from breakaway.ask.studies.sensitivity import SensitivityPlan
 from breakaway.ask.studies.study import (
-    CompareStudy,
-    RobustnessStudy,
-    SensitivityStudy,
     Study,
-    SweepStudy,
 )
-from breakaway.ask.studies.sweep import SweepPlan
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
 from breakaway.base.threads import thread_count
-from breakaway.errors import OutputError, StudyError
+from breakaway.errors import OutputError
 
 
 @dataclass(frozen=True)
@@ -125,29 +116,6 @@ def run_study(
         except OutputError as error:
             raise OutputError(f"{error}; finished parts stay: resume it to go on") from None
     return open_study(folder)
-
-
-def plan_of(study: Study) -> Plan:
-    """Give the way in which a study is run.
-
-    Raises
-    ------
-    StudyError
-        The study can not be run as it is.
-
-    """
-    match study:
-        case SweepStudy():
-            return SweepPlan(study)
-        case RobustnessStudy():
-            return RobustnessPlan(study)
-        case SensitivityStudy():
-            return SensitivityPlan(study)
-        case CompareStudy():
-            return ComparePlan(study)
-        case AgreementStudy():
-            return AgreementPlan(study)
-    raise StudyError(f"study: {type(study).__name__} is none; load one with load_study")
 
 
 class _Runner:
