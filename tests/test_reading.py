@@ -146,3 +146,18 @@ def test_json_and_text_have_limits(tmp_path: Path) -> None:
     path.write_text("1" * 5000)
     with pytest.raises(ValueError, match="digits"):
         read_json(path, 10**6)
+
+
+def test_a_message_has_few_lines_however_much_is_wrong(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    wrong = ", ".join(["0.1"] * 500)
+    path.write_text(
+        f'kind = "agreement"\nscenario = "paper_as_computed"\nagreement.variants = [{wrong}]'
+    )
+    with pytest.raises(StudyError, match=r"and 48\d more$") as error:
+        load_study(path)
+    assert str(error.value).count("\n") <= 21
+    path.write_text(f"kind = [{wrong}]")
+    with pytest.raises(StudyError, match="is not one of") as error:
+        load_study(path)
+    assert len(str(error.value)) < 400

@@ -1,4 +1,4 @@
-"""What is no regular file ends every command with one line, whatever it was given as."""
+"""What is no regular file, or no name, ends every command with a line, whatever it was given as."""
 
 import shutil
 from collections.abc import Callable
@@ -41,3 +41,36 @@ def test_a_command_takes_regular_files_only(
     assert failed.stderr.startswith("error: ") and words in failed.stderr
     assert failed.stderr.count("\n") == 1
     assert not Path("out").exists()
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_name_longer_than_names_may_be(
+    call: Call, log_csv: Path, command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    if log_csv != Path("motor.csv").resolve():
+        shutil.copy(log_csv, "motor.csv")
+    failed = call(*("x" * 300 if word == "FILE" else word for word in COMMANDS[command]))
+    assert (failed.exit_code, failed.stdout) == (2, "")
+    assert failed.stderr.startswith("error: ") and "name too long" in failed.stderr
+    assert failed.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "command", ["run", "design", "export c", "export fmu", "init", "reproduce"]
+)
+def test_a_result_whose_name_is_longer_than_names_may_be(call: Call, command: str) -> None:
+    place = Path("x" * 300) / "loop.fmu"
+    scenario = [] if command == "reproduce" else ["paper_as_computed"]
+    told = [place] if command == "init" else [*scenario, "--out", place]
+    failed = call(*command.split(), *told)
+    assert failed.exit_code == 3
+    assert failed.stderr.startswith("error: ") and "name too long" in failed.stderr
+    assert failed.stderr.count("\n") == 1
+
+
+def test_a_study_whose_scenario_is_no_name(call: Call, tmp_path: Path) -> None:
+    study = tmp_path / "study.toml"
+    study.write_text(f'kind = "sweep"\nscenario = "{"x" * 300}"\n')
+    failed = call("study", study, "--out", tmp_path / "out")
+    assert failed.exit_code == 2 and "Traceback" not in failed.stderr

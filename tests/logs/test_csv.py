@@ -177,3 +177,35 @@ def test_what_was_written_is_read(rows: list[tuple[float, float, float]]) -> Non
     assert log is not None
     np.testing.assert_array_equal(log.position_m, [x for _, x, _ in rows])
     np.testing.assert_array_equal(log.force_n, [force for _, _, force in rows])
+
+
+def test_a_point_is_no_decimal_mark_beside_a_comma(write: Write) -> None:
+    layout = {"delimiter": ";", "decimal": ","}
+    for force in ("1.500", "1.500,5", "2.5"):
+        text = table("t_s;position_m;force_n").replace(",", ";").replace(".", ",")
+        path = write(text.replace(";2,5", f";{force}"))
+        words = rf"column 'force_n', row 1: '{force}' is not a number; .* such as -1,5e-3"
+        with pytest.raises(LogError, match=words):
+            read_log(path, {"csv": layout})
+
+
+@pytest.mark.parametrize(
+    "above", ['"a" rig\n"open\n', "\n\n", 'a;"b";\r\n3/4" tube\r\n', "a,b\rc\r"]
+)
+def test_lines_above_the_header_may_hold_anything(write: Write, above: str) -> None:
+    log = read_log(write(above + table()), {"csv": {"skip_rows": 2}})
+    np.testing.assert_allclose(log.position_m, np.arange(1, 21) * 1e-4)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("\n" + table(), r"the header is an empty line; state as csv\.skip_rows"),
+        ("made by a rig\n" + table(), r"csv\.skip_rows in a mapping leaves out lines"),
+        (table().replace(",", "\t"), r'delimiter = "\\t"'),
+        (table().replace(",", ";"), 'delimiter = ";"'),
+    ],
+)
+def test_a_layout_that_needs_a_mapping_is_told(write: Write, text: str, words: str) -> None:
+    with pytest.raises(LogError, match=words):
+        read_log(write(text))

@@ -153,8 +153,61 @@ def test_hdf5_refuses_claims_without_data(tmp_path: Path) -> None:
     with h5py.File(path, "w") as file:
         file["t_s"], file["position_m"] = T_S, T_S
         file.create_dataset("force_n", shape=(10**12,), dtype="f8", chunks=(1000,))
-    with pytest.raises(LogError, match=r"'force_n' claims 8e.12 bytes; .* can hold at most 0"):
+    with pytest.raises(LogError, match=r"'force_n': was never written .* 0 of 1,000,000,000 piec"):
         read_log(path)
+
+
+@pytest.mark.parametrize("chunks", [None, (10,)])
+def test_hdf5_arrays_that_were_never_written_matter_only_where_wanted(
+    tmp_path: Path, chunks: tuple[int] | None
+) -> None:
+    path = tmp_path / "motor.h5"
+    with h5py.File(path, "w") as file:
+        file["t_s"], file["position_m"], file["force_n"] = T_S, T_S, T_S
+        file.create_dataset("spare", shape=T_S.shape, dtype="f8", chunks=chunks)
+    np.testing.assert_array_equal(read_log(path).force_n, T_S)
+    with h5py.File(path, "a") as file:
+        del file["force_n"]
+        file.move("spare", "force_n")
+        if chunks:
+            file["force_n"][:30] = 1.0
+    told = rf"3 of {len(T_S) // 10} pieces" if chunks else "0 of 1 pieces"
+    with pytest.raises(LogError, match=f"column 'force_n': was never written in full: .* {told}"):
+        read_log(path)
+
+
+def test_hdf5_types_that_are_not_known_matter_only_where_wanted(tmp_path: Path) -> None:
+    path = tmp_path / "motor.h5"
+    when = h5py.h5t.UNIX_D64LE
+    with h5py.File(path, "w") as file:
+        file["t_s"], file["position_m"], file["force_n"] = T_S, T_S, T_S
+        rows = h5py.h5s.create_simple(T_S.shape)
+        h5py.h5d.create(file.id, b"when", when, rows)
+        row = h5py.h5t.create(h5py.h5t.COMPOUND, 8)
+        row.insert(b"when", 0, when)
+        h5py.h5d.create(file.id, b"table", row, rows)
+        h5py.h5a.create(file["force_n"].id, b"unit", when, h5py.h5s.create(h5py.h5s.SCALAR))
+    np.testing.assert_array_equal(read_log(path).force_n, T_S)
+    channels = {"force_n": {"from": "when", "unit": "N"}}
+    with pytest.raises(LogError, match=r"column 'when': is of a type that is not known"):
+        read_log(path, {"channels": channels})
+
+
+def test_hdf5_filters_the_wrong_way_around_matter_only_where_wanted(tmp_path: Path) -> None:
+    path = tmp_path / "motor.h5"
+    plan = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    plan.set_chunk((10,))
+    plan.set_deflate(4)
+    plan.set_shuffle()
+    with h5py.File(path, "w") as file:
+        file["t_s"], file["position_m"], file["force_n"] = T_S, T_S, T_S
+        rows = h5py.h5s.create_simple(T_S.shape)
+        made = h5py.h5d.create(file.id, b"spare", h5py.h5t.NATIVE_DOUBLE, rows, plan)
+        h5py.Dataset(made)[:] = T_S
+    np.testing.assert_array_equal(read_log(path).force_n, T_S)
+    channels = {"force_n": {"from": "spare", "unit": "N"}}
+    with pytest.raises(LogError, match=r"column 'spare': is deflated before it is shuffled"):
+        read_log(path, {"channels": channels})
 
 
 def test_hdf5_refuses_complex_numbers_and_text(tmp_path: Path) -> None:

@@ -252,6 +252,17 @@ def test_tdms_lists_of_objects_count(tmp_path: Path) -> None:
         read_log(path)
 
 
+def test_tdms_segments_are_told_by_their_tag(tmp_path: Path) -> None:
+    path = tmp_path / "motor.tdms"
+    with TdmsWriter(path) as writer:
+        writer.write_segment([ChannelObject("Rig", "force_n", np.zeros(100))])
+    path.write_bytes(path.read_bytes() + bytes(2 * 10**7))
+    begin = time.perf_counter()
+    with pytest.raises(LogError, match="a segment begins with"):
+        read_log(path)
+    assert time.perf_counter() - begin < 1.0
+
+
 # Many names, and long ones
 
 

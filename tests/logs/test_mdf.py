@@ -1,6 +1,7 @@
 """MDF files: groups and their clocks, raw values of all widths, records, and what is refused."""
 
 import random
+import struct
 import time
 import tracemalloc
 import zlib
@@ -378,6 +379,26 @@ def test_memory_is_little_more_than_the_values(tmp_path: Path) -> None:
         tracemalloc.stop()
     values = 8 * len(t_s) * 5
     assert peak < 1.4 * values + 40e6
+
+
+@pytest.mark.parametrize("id_bytes", [0, 1])
+def test_memory_for_one_large_packed_block(tmp_path: Path, id_bytes: int) -> None:
+    rows, size = 250_000, 80
+    data = bytes(rows * (id_bytes + size))
+    packed = zlib.compress(data)
+    maker = Maker()
+    group = maker.group(maker.channel("a"), rows, size)
+    told = struct.pack("<2sBxIQQ", b"DT", 0, 0, len(data), len(packed))
+    block = maker.block("DZ", [], told + packed)
+    path = maker.finish(tmp_path / "packed.mf4", (group, block, id_bytes))
+    tracemalloc.start()
+    try:
+        read(path)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    asked = 8 * rows + 2 * len(data) + len(packed)
+    assert peak < asked + 50e6
 
 
 def test_many_channels_are_read_in_time(tmp_path: Path) -> None:

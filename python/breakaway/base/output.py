@@ -13,6 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from breakaway.base.ownership import Kind, refuse_files_of_others, refuse_links, refuse_other_kinds
+from breakaway.base.reading import is_folder, is_there
 from breakaway.errors import OutputError
 
 STAGING_FOLDER = re.compile(r"\.writing\.[a-z0-9_]{8}")
@@ -161,7 +162,7 @@ def refuse_to_overwrite(source: Path, target: Path) -> None:
         Both are the same file.
 
     """
-    if source.exists() and target.exists() and source.samefile(target):
+    if is_there(source) and is_there(target) and source.samefile(target):
         raise OutputError(f"{target}: is what was read; give another place for the result")
 
 
@@ -179,7 +180,7 @@ def output_folder(folder: Path, kind: Kind, names: Collection[str] = ()) -> Iter
         folder, a symbolic link, or a file that is of no result of this kind.
 
     """
-    existed = folder.exists()
+    existed = is_there(folder)
     claim(folder, kind, names)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -220,7 +221,7 @@ def claim(folder: Path, kind: Kind, names: Collection[str] = ()) -> None:
     refuse_other_kinds(folder, kind)
     for target in (folder / name for name in names):
         refuse_links(target)
-        if target.is_dir():
+        if is_folder(target):
             raise OutputError(f"{target}: is a folder where a file has to go; move it away")
     refuse_files_of_others(folder, kind, names)
 

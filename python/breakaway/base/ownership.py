@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from breakaway.base.reading import read_json
+from breakaway.base.reading import is_link, is_there, read_json
 from breakaway.errors import OutputError
 
 MOST_MARKER_BYTES = 64 * 2**20
@@ -75,7 +75,7 @@ def refuse_files_of_others(folder: Path, kind: Kind, names: Iterable[str]) -> No
         One of the names is taken there.
 
     """
-    taken = [name for name in names if (folder / name).exists()]
+    taken = [name for name in names if is_there(folder / name)]
     if taken and not kind.is_in(folder):
         raise OutputError(
             f"{folder / taken[0]}: is there already, and no {kind.marker} of {kind.name} beside "
@@ -93,7 +93,7 @@ def refuse_links(*paths: Path) -> None:
 
     """
     for path in paths:
-        if path.is_symlink():
+        if is_link(path):
             raise OutputError(
                 f"{path}: is a symbolic link, and nothing is written, renamed or deleted through "
                 "one; remove it, or give another folder"

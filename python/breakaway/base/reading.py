@@ -65,6 +65,30 @@ def _check_regular(mode: int) -> None:
         raise OSError(f"is {kind}, not a file; give the path of a regular file")
 
 
+# Methods of Path raise where a name is too long, or a folder on the way can not be looked into; for
+# these there is nothing, and whatever opens or writes the place then says why it can not.
+
+
+def is_there(path: Path) -> bool:
+    """Whether there is something at a path."""
+    return os.path.exists(path)  # noqa: PTH110
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a regular file, or a link to one, at a path."""
+    return os.path.isfile(path)  # noqa: PTH113
+
+
+def is_folder(path: Path) -> bool:
+    """Whether there is a folder, or a link to one, at a path."""
+    return os.path.isdir(path)  # noqa: PTH112
+
+
+def is_link(path: Path) -> bool:
+    """Whether there is a symbolic link at a path."""
+    return os.path.islink(path)  # noqa: PTH114
+
+
 def read_text(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
     """Read a UTF-8 text of limited size.
 
@@ -217,10 +241,15 @@ def text_of(
     except FileNotFoundError:
         raise kind(f"{path}: {missing}") from None
     except (OSError, ValueError) as error:
-        raise kind(f"{path}: can not be read as text: {error}") from None
+        raise kind(f"{path}: can not be read as text: {why(error)}") from None
     if text.startswith("\ufeff"):
         raise kind(f"{path}: starts with a byte order mark; save it as plain UTF-8")
     return text
+
+
+def why(error: OSError | ValueError) -> str:
+    """Say what is wrong, without the path that the system adds."""
+    return getattr(error, "strerror", None) or str(error)
 
 
 def table_of(text: str, source: object, kind: type[BreakawayError]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from breakaway.base.reading import is_there
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.show import Sheet, busy, say, say_aside, say_json
 from breakaway.errors import OutputError
@@ -92,7 +93,7 @@ def compare(
                 notice=say_aside,
             )
     except (KeyboardInterrupt, OutputError):
-        if (out / "manifest.json").exists():
+        if is_there(out / "manifest.json"):
             say_aside(f"finished parts are kept; go on with: {_again(out)}")
         raise
     if json:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from breakaway.base.reading import is_file, is_folder, is_there
 from breakaway.cli.identified import law_tables, regression_tables
 from breakaway.cli.progress import counted
 from breakaway.cli.quantity import memory_bytes
@@ -321,7 +322,7 @@ def _page(log: Path, out: Path | None) -> Path:
     page = Path(f"{log.stem}.html") if out is None else out.with_suffix(".html")
     if page == out:
         raise OutputError(f"{out}: is where the report goes; give --out another suffix")
-    if page.is_file() and not _is_report(page):
+    if is_file(page) and not _is_report(page):
         raise OutputError(f"{page}: is there and is no report; move it, or give another --out")
     return page
 
@@ -393,10 +394,10 @@ def _check_target(log: Path, out: Path) -> None:
     from breakaway.measure.identification import JointFile
 
     refuse_to_overwrite(log, out)
-    if not out.parent.is_dir():
-        reason = "Not a directory" if out.parent.exists() else "its folder is missing"
+    if not is_folder(out.parent):
+        reason = "Not a directory" if is_there(out.parent) else "its folder is missing"
         raise OutputError(f"{out}: can not be written: {reason}")
-    if out.is_file():
+    if is_file(out):
         try:
             JointFile.load(out)
         except ScenarioError:

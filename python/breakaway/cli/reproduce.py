@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from breakaway.base.reading import is_there
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.show import Sheet, say, say_aside
 from breakaway.errors import OutputError
@@ -49,7 +50,7 @@ def _in_full(out: Path) -> Reproduction:
             full = FullSurvey(progress=report, notice=say_aside)
             return reproduce_paper(out, say_aside, full)
     except (KeyboardInterrupt, OutputError):
-        if (out / "figure_10").exists():
+        if is_there(out / "figure_10"):
             say_aside(
                 f"finished levels are kept; go on with: breakaway reproduce --full --out {out}"
             )

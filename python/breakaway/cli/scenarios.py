@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from breakaway.base.reading import is_file
 from breakaway.cli.show import Sheet, say, say_json
 from breakaway.errors import OutputError
 
@@ -59,7 +60,7 @@ def init(
 
     values = load_scenario(preset).with_(name=file.stem, description=f"Made from {preset}")
     content = scenario_template(values)
-    if file.is_file() and not force:
+    if is_file(file) and not force:
         raise OutputError(f"{file}: exists; give another name, or --force to overwrite it")
     write_atomically(file, content.encode())
     say(f"wrote {file}; edit it, then: breakaway run {file}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from breakaway.base.reading import is_there
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
 from breakaway.cli.show import Sheet, say, say_aside, say_json
@@ -48,7 +49,7 @@ def study(
     from breakaway.ask.studies import load_study, run_study
 
     asked = load_study(file)
-    if out.exists():
+    if is_there(out):
         from breakaway.base.output import refuse_to_overwrite
 
         refuse_to_overwrite(file, out / "study.toml")
@@ -58,7 +59,7 @@ def study(
                 asked, out, resume=resume, threads=threads, progress=progress, notice=say_aside
             )
     except (KeyboardInterrupt, OutputError):
-        if (out / "manifest.json").exists():
+        if is_there(out / "manifest.json"):
             say_aside(
                 f"finished parts are kept; go on with: breakaway study {file} --out {out} --resume"
             )

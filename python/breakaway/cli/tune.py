@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from breakaway.base.reading import is_there
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
 from breakaway.cli.show import Sheet, say, say_aside, say_json
@@ -59,7 +60,7 @@ def tune(
                 notice=say_aside,
             )
     except (KeyboardInterrupt, OutputError):
-        if (out / "manifest.json").exists():
+        if is_there(out / "manifest.json"):
             more = "" if trials is None else f" --trials {trials}"
             say_aside(
                 f"finished trials are kept; go on with: breakaway tune {file} --out {out}{more} "

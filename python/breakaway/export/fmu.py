@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 from breakaway import _core
 from breakaway.base.output import write_atomically
+from breakaway.base.reading import is_folder
 from breakaway.base.text import c_identifier
 from breakaway.errors import OutputError, ScenarioError
 from breakaway.export.c_files import TITLES, c_texts, check_choice, draws
@@ -117,7 +118,7 @@ def export_fmu(
     check_choice("fmi", str(fmi), ("2", "3"))
     version: Fmi = "2" if str(fmi) == "2" else "3"
     path = Path(out)
-    if path.is_dir():
+    if is_folder(path):
         raise OutputError(f"{path}: is a folder; name a file in it, such as {path / what}.fmu")
     recording = record(resolve(scenario), what, "double")
     if version == "2" and draws(recording) and recording.scenario.seed > _LARGEST_INTEGER:

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from breakaway.ask.studies.study import StudyModel
 from breakaway.base.reading import read_toml
+from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.files import load_method, load_population, preset_names
 from breakaway.model.scenario.method import Method
@@ -124,7 +125,7 @@ def _check_law(law: str) -> None:
         return
     near = difflib.get_close_matches(str(law), LAWS, n=1)
     hint = f"; did you mean {near[0]!r}?" if near else ""
-    raise StudyError(f"laws: {law!r} is not one of {', '.join(LAWS)}{hint}")
+    raise StudyError(f"laws: {shown(law)} is not one of {', '.join(LAWS)}{hint}")
 
 
 def _whole(source: str | Path) -> Asked | None:

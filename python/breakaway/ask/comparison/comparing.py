@@ -20,6 +20,7 @@ from breakaway.ask.studies.folder import prepared
 from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.studies.plan import Row
 from breakaway.base.equality import ByValue
+from breakaway.base.reading import is_folder, is_there
 from breakaway.base.threads import thread_count
 from breakaway.errors import OutputError, StudyError
 from breakaway.model.scenario.method import Method
@@ -173,7 +174,7 @@ def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[Pieces
     if folder is None:
         yield None
         return
-    if folder.exists() and not folder.is_dir():
+    if is_there(folder) and not is_folder(folder):
         raise StudyError(f"out: {folder} is a file, not a folder; give a folder")
     with prepared(folder, manifest_of(asked), resume=resume) as pieces:
         yield pieces

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
 from breakaway.ask.studies.levels import stepped_levels, varied_numbers
+from breakaway.base.text import shown
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.measure.identification.joint_file import JointFile
 from breakaway.model.scenario.distribution import Distribution
@@ -79,7 +80,7 @@ def known_metrics(names: list[str], where: str = "metrics") -> list[str]:
         if name not in METRICS:
             near = difflib.get_close_matches(name, METRICS, n=1, cutoff=0.5)
             hint = f"did you mean {near[0]}?" if near else f"give some of {', '.join(METRICS)}"
-            raise StudyError(f"{where}: {name!r} is not a metric; {hint}")
+            raise StudyError(f"{where}: {shown(name)} is not a metric; {hint}")
         if names.count(name) > 1:
             raise StudyError(f"{where}: {name!r} is named twice; name each metric once")
     return names

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from breakaway.ask.studies.study import KINDS, Study
-from breakaway.base.reading import table_of, text_of
+from breakaway.base.reading import is_there, table_of, text_of
+from breakaway.base.text import shown
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.model.scenario.files import preset_names
 
@@ -90,9 +91,9 @@ def parse_study(values: Mapping[str, Any]) -> Study:
     if kind is None:
         raise StudyError(f"kind: is missing; give one of {known}")
     if not isinstance(kind, str) or kind not in KINDS:
-        near = difflib.get_close_matches(str(kind), KINDS, n=1)
+        near = difflib.get_close_matches(shown(kind), KINDS, n=1)
         hint = f"; did you mean {near[0]!r}?" if near else ""
-        raise StudyError(f"kind: {kind!r} is not one of {known}{hint}")
+        raise StudyError(f"kind: {shown(kind)} is not one of {known}{hint}")
     for other in KINDS:
         if other != kind and other in values:
             raise StudyError(
@@ -112,5 +113,5 @@ def _from_folder(values: dict[str, Any], folder: Path) -> dict[str, Any]:
         if isinstance(named, str) and named not in preset_names():
             inside = folder / named
             # What is no file there either keeps its name, so that the error can guess a preset.
-            table["scenario"] = str(inside) if inside.exists() else named
+            table["scenario"] = str(inside) if is_there(inside) else named
     return values

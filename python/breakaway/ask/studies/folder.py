@@ -23,7 +23,7 @@ from breakaway.base.output import (
     write_inside,
 )
 from breakaway.base.ownership import refuse_links
-from breakaway.base.reading import read_json
+from breakaway.base.reading import is_folder, is_there, read_json
 from breakaway.base.text import csv_cell
 from breakaway.errors import OutputError, StudyError
 
@@ -48,10 +48,10 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
 
     """
     called = kind_of(manifest)
-    existed = folder.exists()
+    existed = is_there(folder)
     try:
         _refuse_links_in(folder)
-        found = (folder / MANIFEST).exists()
+        found = is_there(folder / MANIFEST)
         if found:
             _refuse_other(folder, read_manifest(folder), manifest, resume=resume)
         else:
@@ -75,7 +75,7 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
 
 def _refuse_links_in(folder: Path) -> None:
     for inside in (folder, folder / PARTS):
-        if inside.is_dir():
+        if is_folder(inside):
             try:
                 refuse_links(*sorted(inside.iterdir()))
             except OutputError as error:  # nothing can be gone on with
@@ -85,7 +85,7 @@ def _refuse_links_in(folder: Path) -> None:
 def _refuse_filled(folder: Path, called: str) -> None:
     """Refuse a folder in which something is, but for what a start leaves that was killed."""
     for inside in (folder, folder / PARTS):
-        for path in sorted(inside.iterdir()) if inside.is_dir() else ():
+        for path in sorted(inside.iterdir()) if is_folder(inside) else ():
             ours = STAGING_FILE.fullmatch(path.name) or STAGING_FOLDER.fullmatch(path.name)
             if not ours and path not in (folder / LOCK, folder / PARTS):
                 raise StudyError(

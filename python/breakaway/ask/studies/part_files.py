@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from breakaway.ask.studies.pieces import MISSING, Pieces
+from breakaway.base.reading import is_folder
 
 PARTS = "parts"
 """Folder of the parts within that of a study."""
@@ -24,7 +25,7 @@ def part_name(number: int) -> str:
 def parts_in(folder: Path) -> list[str]:
     """Give the places of all files in a study's folder that are named as parts."""
     inside = folder / PARTS
-    names = [path.name for path in inside.iterdir()] if inside.is_dir() else []
+    names = [path.name for path in inside.iterdir()] if is_folder(inside) else []
     return [f"{PARTS}/{name}" for name in sorted(names) if PART.fullmatch(name)]
 
 

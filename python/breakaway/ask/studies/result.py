@@ -18,6 +18,7 @@ from breakaway.ask.studies.parts import part_schema
 from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.study import Study
+from breakaway.base.reading import is_file, is_there
 from breakaway.errors import StudyError
 from breakaway.run.batch.batch import as_pandas
 from breakaway.run.batch.columns import at_run, with_nominal_controller
@@ -72,7 +73,7 @@ class StudyResult:
             The study is not finished, or a part or the summary is not as it wrote it.
 
         """
-        if not (self.folder / SUMMARY).is_file():
+        if not is_file(self.folder / SUMMARY):
             raise StudyError(
                 f"{self.folder}: is not finished, {len(self.part_files)} parts are; "
                 "go on with --resume"
@@ -97,7 +98,7 @@ class StudyResult:
         )
 
     def _refuse_flawed_parts(self) -> None:
-        if (self.folder / SUMMARY).exists():
+        if is_there(self.folder / SUMMARY):
             names = finished_names(self._pieces)
         else:
             names = [part_name(number) for number in range(len(self.part_files))]

@@ -7,6 +7,7 @@ from typing import Any
 
 from breakaway.ask.studies.files import load_table
 from breakaway.ask.tuning.problem import Tuning
+from breakaway.base.reading import is_there
 from breakaway.model.scenario.files import preset_names
 
 
@@ -57,5 +58,5 @@ def _from_folder(values: dict[str, Any], folder: Path) -> dict[str, Any]:
         named = values.get(key)
         if isinstance(named, str) and named not in preset_names(presets):
             inside = folder / named
-            values[key] = str(inside) if inside.exists() else named
+            values[key] = str(inside) if is_there(inside) else named
     return values

@@ -13,6 +13,7 @@ from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.tuning.evaluation import Evaluation
 from breakaway.ask.tuning.problem import Tuning
 from breakaway.ask.tuning.records import TRIALS, Records
+from breakaway.base.reading import is_file
 from breakaway.errors import StudyError
 from breakaway.model.scenario.files import load_method
 from breakaway.model.scenario.method import Method
@@ -71,7 +72,7 @@ class TuningResult:
             The tuning is not finished, or its trials or the summary are not as it wrote them.
 
         """
-        if not (self.folder / SUMMARY).is_file():
+        if not is_file(self.folder / SUMMARY):
             raise StudyError(
                 f"{self.folder}: is not finished, {len(self.evaluations)} trials are; go on with "
                 "--resume"

@@ -28,6 +28,7 @@ from breakaway.ask.tuning.scores import laws_as_json, laws_of_json
 from breakaway.ask.tuning.search import Search
 from breakaway.ask.tuning.summary import Found
 from breakaway.ask.tuning.writing import write_end
+from breakaway.base.reading import is_there
 from breakaway.base.threads import thread_count
 from breakaway.errors import OutputError, StudyError
 from breakaway.model.scenario.method import Method
@@ -145,7 +146,7 @@ def _check_counts(trials: int | None, threads: int | None) -> None:
 
 def _check_found(folder: Path, tuning: Tuning) -> None:
     """Raise if the folder holds more trials than are asked for."""
-    if not (folder / MANIFEST).exists():
+    if not is_there(folder / MANIFEST):
         return
     found = len(Records(folder, TRIALS, manifest_of(tuning)["identity"]).read())
     if found > tuning.trials:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.ask.studies.statistics import clopper_pearson
+from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.run.trials import TRIAL_METRICS, Trial
 
@@ -99,11 +100,11 @@ def score_kind(name: str) -> ScoreKind:
     if found is None or found[3] not in METRICS:
         near = difflib.get_close_matches(name, _examples(found), n=1, cutoff=0.5)
         hint = f"did you mean {near[0]}?" if near else f"give one of {_known()}"
-        raise StudyError(f"{name!r} is not a score; {hint}")
+        raise StudyError(f"{shown(name)} is not a score; {hint}")
     percent = 50.0 if found[2] is None else float(found[2])
     if not 0.0 < percent <= 100.0:
         raise StudyError(
-            f"{name!r} is not a score: its percentile is not within 0 and 100; give p1 to p100"
+            f"{shown(name)} is not a score: its percentile is not within 0 and 100; give p1 to p100"
         )
     return ScoreKind(name, found[3], round(percent / 100.0, 12))
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from breakaway.base.reading import open_regular
+from breakaway.base.text import brief
 from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.mapping import CsvMapping
@@ -24,6 +25,9 @@ LONGEST_ROW = 4 * 2**20
 
 LONGEST_NUMBER = 400
 """Most characters of a number."""
+
+EXCHANGED = str.maketrans(",.", ".,")
+"""Where the decimal mark is a comma: 1.500 may be 1500 to whom wrote it, and 1.5 to another."""
 
 CELLS_AT_ONCE, ROWS_AT_ONCE = 100_000, 20
 """About how many cells are texts at a time, but no fewer rows than these; the rest are numbers."""
@@ -109,8 +113,17 @@ class _Rows:
     def __init__(self, path: Path, text: io.TextIOWrapper, layout: CsvMapping) -> None:
         self.path, self.text = path, text
         self.length = 0
-        self.cells = csv.reader(self._lines(), delimiter=layout.delimiter, strict=True)
+        self.lines = self._lines()
+        self.cells = csv.reader(self.lines, delimiter=layout.delimiter, strict=True)
         self.found = self._found()
+
+    def skip(self, count: int) -> None:
+        """Leave out lines, whatever stands in them."""
+        for _ in range(count):
+            self.length = 0
+            if next(self.lines, None) is None:
+                break
+        self.length = 0
 
     def _lines(self) -> Iterator[str]:
         while line := self.text.readline(LONGEST_ROW + 1):
@@ -146,27 +159,29 @@ class _Rows:
 
 def _header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], list[str]]:
     """Return the names and the units (empty texts without a units row)."""
-    found = iter(rows)
-    first = next(found, None)
-    if first is None:
+    rows.skip(layout.skip_rows)
+    top = list(islice(rows, 1 + layout.units_row))
+    if not top and not layout.skip_rows:
         raise LogError(f"{path.name}: the file holds only empty lines; export the log again")
-    for _ in range(layout.skip_rows):
-        first = next(found, None)
-        if first is None:
-            break
-    top = [] if first is None else [first, *islice(found, layout.units_row)]
     if len(top) < 1 + layout.units_row:
         raise LogError(
             f"{path.name}: there is no header below {layout.skip_rows} skipped lines; correct "
             "csv.skip_rows and csv.units_row in the mapping"
         )
     header = [cell.strip() for cell in top[0]]
-    check_names(path, len(header), max(map(len, header), default=0))
-    if len(header) == 1 and any(mark in header[0] for mark in ";\t,"):
+    if not header:
         raise LogError(
-            f"{path.name}: the header '{header[0][:80]}' is one cell; columns must be separated "
+            f"{path.name}: the header is an empty line; state as csv.skip_rows in a mapping how "
+            "many lines stand above it"
+        )
+    check_names(path, len(header), max(map(len, header), default=0))
+    mark = next((mark for mark in ";\t," if mark in header[0]), None)
+    if len(header) == 1 and mark:
+        shown = mark.replace("\t", r"\t")
+        raise LogError(
+            f"{path.name}: the header '{brief(header[0])}' is one cell; columns must be separated "
             "by commas and decimals by points: export it so, or write a mapping with "
-            'csv = { delimiter = ";", decimal = "," }'
+            f'csv = {{ delimiter = "{shown}", decimal = "," }}'
         )
     units = [cell.strip().strip("[]()") for cell in top[1]] if layout.units_row else []
     units += [""] * (len(header) - len(units))
@@ -181,7 +196,8 @@ def _blocks(path: Path, rows: _Rows, count: int, at_once: int) -> Iterator[list[
             if len(cells) != count:
                 raise LogError(
                     f"{path.name}: row {row}: {len(cells)} cells where the header has {count}; "
-                    "every row must have as many as the header: repair the row, or export again"
+                    "every row must have as many as the header: repair the row, or export again; "
+                    "csv.skip_rows in a mapping leaves out lines above the header"
                 )
         done += len(block)
         yield block
@@ -201,9 +217,8 @@ class _Column:
             return
         begin = len(self.numbers)
         if (plain or _is_plain("".join(cells))) and max(map(len, cells)) <= LONGEST_NUMBER:
-            pointed = cells if self.decimal == "." else [c.replace(",", ".") for c in cells]
             try:
-                self.numbers.extend(map(float, pointed))
+                self.numbers.extend(map(float, map(self._pointed, cells)))
             except ValueError:
                 del self.numbers[begin:]
             else:
@@ -218,11 +233,15 @@ class _Column:
         given, self.numbers = self.numbers, array("d")
         return frozen(np.frombuffer(given))
 
+    def _pointed(self, cell: str) -> str:
+        """Give a cell with a point for its decimal mark; the other mark makes it no number."""
+        return cell if self.decimal == "." else cell.translate(EXCHANGED)
+
     def _why(self, cell: str) -> str:
         """Say why a cell is no finite number, or nothing."""
         plain = _is_plain(cell) and len(cell) <= LONGEST_NUMBER
         try:
-            value = float(cell.replace(self.decimal, ".") if plain else "")
+            value = float(self._pointed(cell) if plain else "")
         except ValueError:
             value, reason = math.nan, "not a number"
         else:
@@ -230,8 +249,8 @@ class _Column:
         if math.isfinite(value):
             return ""
         return (
-            f"{cell[:40]!r} is {reason}; it must be a finite number such as -1.5e-3: cut the row "
-            "out, or export the log again"
+            f"{cell[:40]!r} is {reason}; it must be a finite number such as -1{self.decimal}5e-3: "
+            "cut the row out, or export the log again"
         )
 
 

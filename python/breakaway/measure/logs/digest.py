@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from breakaway.base.reading import open_regular
+from breakaway.base.reading import open_regular, why
 from breakaway.errors import LogError
 
 
@@ -31,7 +31,7 @@ def digested(path: Path) -> Iterator[str]:
     except FileNotFoundError:
         raise LogError(f"{path}: there is no such file; check the path") from None
     except (OSError, ValueError) as error:
-        raise LogError(f"{path}: can not be read: {error}") from None
+        raise LogError(f"{path}: can not be read: {why(error)}") from None
     if not size:
         raise LogError(f"{path.name}: the file is empty; export the log again")
     yield digest

@@ -81,7 +81,7 @@ def _read(path: Path, budget: Budget, separator: str) -> RawFile:
     with open_regular(path) as stream, h5py.File(stream, "r") as file:
         wanted = []
         for name, dataset in _datasets(h5py, raw, file, separator):
-            reason = _elsewhere(dataset) or _no_numbers(h5py, dataset)
+            reason = _elsewhere(dataset) or _no_numbers(h5py, dataset) or _unwritten(dataset)
             if reason:
                 raw.refuse(name, reason)
             else:
@@ -146,6 +146,8 @@ def _elsewhere(dataset: Any) -> str:  # noqa: ANN401
                 f"goes through filter {number} of HDF5; only deflate or LZF, shuffle and Fletcher "
                 "32 are read, each once: export it so, or without filters"
             )
+    if DEFLATE in filters and SHUFFLE in filters[filters.index(DEFLATE) :]:
+        return "is deflated before it is shuffled; export it the other way around"
     return ""
 
 
@@ -158,14 +160,33 @@ def _no_numbers(h5py: Any, dataset: Any) -> str:  # noqa: ANN401
     """Say why an array is no vector of real numbers, or nothing; members of tables come later."""
     if is_opaque(h5py, dataset.id.get_type()):
         return "is of opaque data; it must be real numbers"
-    if h5py.check_ref_dtype(dataset.dtype) is not None:
+    try:
+        kind = dataset.dtype
+    except (TypeError, ValueError) as error:
+        return f"is of a type that is not known ({error}); it must be real numbers"
+    if h5py.check_ref_dtype(kind) is not None:
         return "is of references to other places; it must be real numbers"
     if _attribute(h5py, dataset, "MATLAB_class") in TEXT_CLASSES:
         return "is text or a cell array; it must be a vector of real numbers"
     if dataset.shape is None:
         return "is empty; it must be a vector of real numbers"
-    kind = np.dtype(float) if dataset.dtype.names else dataset.dtype
-    return no_vector(kind, dataset.shape)
+    return no_vector(np.dtype(float) if kind.names else kind, dataset.shape)
+
+
+def _unwritten(dataset: Any) -> str:  # noqa: ANN401
+    """Say whether an array has values that were never written: HDF5 makes them up, mostly as 0."""
+    if dataset.chunks is None:
+        told, written = 1, int(dataset.id.get_storage_size() > 0)
+    else:
+        sizes = zip(dataset.shape, dataset.chunks, strict=True)
+        told = math.prod(-(-size // chunk) for size, chunk in sizes)
+        written = dataset.id.get_num_chunks()
+    if written >= told:
+        return ""
+    return (
+        f"was never written in full: the file has {written:,} of {told:,} pieces, and no values "
+        "for the others; record it again, or export it up to there"
+    )
 
 
 def _wanted(raw: RawFile, name: str, dataset: Any, separator: str) -> list[_Wanted]:  # noqa: ANN401
@@ -232,7 +253,10 @@ def _attribute(h5py: Any, dataset: Any, name: str) -> str:  # noqa: ANN401
     """Return an attribute that is one text, or an empty one."""
     if name not in dataset.attrs or is_opaque(h5py, dataset.attrs.get_id(name).get_type()):
         return ""
-    value = dataset.attrs[name]
+    try:
+        value = dataset.attrs[name]
+    except (TypeError, ValueError):  # of a type that h5py does not know
+        return ""
     if isinstance(value, bytes):
         return value.decode(errors="replace")
     return value if isinstance(value, str) else ""

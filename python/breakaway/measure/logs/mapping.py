@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field
 
-from breakaway.base.reading import table_of, text_of
+from breakaway.base.reading import is_file, table_of, text_of
 from breakaway.errors import LogError, ScenarioError
 from breakaway.measure.logs.units import dimension_of, unit_of
 from breakaway.model.scenario.model import Model, Name, Text
@@ -95,7 +95,7 @@ def load_mapping(given: str | Path | Keys[str, Any] | None, log: Path) -> tuple[
         path = Path(given)
         return parse_mapping(_toml(path), path.name), path.name
     beside = log.with_suffix(".toml")
-    if beside != log and beside.is_file():
+    if beside != log and is_file(beside):
         values = _toml(beside)
         if any(isinstance(values.get(key), dict) for key in ("channels", "csv")):
             return parse_mapping(values, beside.name), beside.name

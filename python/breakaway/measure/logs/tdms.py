@@ -78,7 +78,9 @@ def _ask_for_segments(stream: BinaryIO, budget: Budget) -> None:
     place, count = 0, 0
     while place + LEAD_IN.size <= end:
         stream.seek(place)
-        _, flags, length = LEAD_IN.unpack(stream.read(LEAD_IN.size))
+        tag, flags, length = LEAD_IN.unpack(stream.read(LEAD_IN.size))
+        if tag != b"TDSm":
+            raise ValueError(f"a segment begins with {tag!r}")
         if flags & HAS_OBJECTS:
             (told,) = struct.unpack(">I" if flags & IS_BIG_ENDIAN else "<I", stream.read(4))
             if told * LEAST_OBJECT > end - place:

@@ -14,6 +14,9 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from breakaway.base.text import LONGEST_NAME, brief, shown, visible
 from breakaway.errors import ScenarioError
 
+MOST_LINES = 20
+"""Most fields that a message names; a scenario has some ten tables."""
+
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -80,7 +83,9 @@ def holds_number(annotation: object) -> bool:
 
 def explain(error: ValidationError, model: type[BaseModel]) -> str:
     """One line for each invalid field: its path, its value, the valid range and the remedy."""
-    return "\n".join(dict.fromkeys(_line(detail, model) for detail in error.errors()))
+    lines = list(dict.fromkeys(_line(detail, model) for detail in error.errors()))
+    more = [f"and {len(lines) - MOST_LINES:,} more"] if len(lines) > MOST_LINES else []
+    return "\n".join(lines[:MOST_LINES] + more)
 
 
 def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
 from breakaway.model.scenario.method import Method
@@ -93,7 +94,7 @@ def scenario_of(
     Gains by pole placement are designed for that part, and stay.
     """
     if law not in LAWS:
-        raise StudyError(f"law: {law!r} is not one of {', '.join(LAWS)}")
+        raise StudyError(f"law: {shown(law)} is not one of {', '.join(LAWS)}")
     nominal = {name: np.array([value]) for name, value in population.nominal.items()}
     reference = method.reference or {
         "kind": "ramp",
@@ -141,6 +142,6 @@ def _put(values: dict[str, object], path: str, value: float) -> None:
     for name in parents:
         inner = values.get(name)
         if not isinstance(inner, dict):
-            raise StudyError(f"knows: {path!r} is not a number of the method")
+            raise StudyError(f"knows: {shown(path)} is not a number of the method")
         values = inner
     values[last] = value

@@ -115,32 +115,43 @@ def _split(
     """Take the records that are whole, and give those of each group together."""
     data, width, place = bytes(pending), data_group.id_bytes, 0
     starts: dict[int, list[int]] = {number: [] for number in groups}
+    # By the bytes that stand in the file: all records are walked through one by one.
+    known = {
+        number.to_bytes(width, "little"): (
+            0 if group.is_vlsd else width + group.record_bytes,
+            starts[number].append,
+        )
+        for number, group in groups.items()
+        if number < 1 << 8 * width
+    }
     while place + width <= len(data):
-        number = int.from_bytes(data[place : place + width], "little")
-        group = groups.get(number)
-        if group is None:
+        found = known.get(data[place : place + width])
+        if found is None:
+            number = int.from_bytes(data[place : place + width], "little")
             raise blocks.damaged(data_group.data, f"holds a record of a group {number} that is not")
-        start = place + width
-        size = group.record_bytes
-        if group.is_vlsd:
-            size = 4 + int.from_bytes(data[start : start + 4], "little")
-        if start + size > len(data):
+        size, add = found
+        if not size:
+            told = data[place + width : place + width + 4]
+            size = width + 4 + int.from_bytes(told, "little")
+        if place + size > len(data):
             break
-        starts[number].append(start)
-        place = start + size
+        add(place)
+        place += size
     del pending[:place]
-    for number, found in starts.items():
+    for number, places in starts.items():
         group = groups[number]
-        if found and not group.is_vlsd:
-            rows = np.asarray(found)[:, None] + np.arange(group.record_bytes)
+        if places and not group.is_vlsd:
+            rows = np.asarray(places)[:, None] + np.arange(width, width + group.record_bytes)
             yield group, np.frombuffer(data, np.uint8)[rows]
 
 
 def _chunks(blocks: Blocks, place: int, budget: Budget) -> Iterator[bytes]:
-    """Give the data behind a link, without packing."""
+    """Give the data behind a link, without packing, in pieces of at most `CHUNK_BYTES`."""
     for block in _data_blocks(blocks, place):
         if block.kind == "DZ":
-            yield _unpacked(blocks, block, budget)
+            data = _unpacked(blocks, block, budget)
+            for begin in range(0, len(data), CHUNK_BYTES):
+                yield data[begin : begin + CHUNK_BYTES]
             continue
         for begin in range(block.content, block.end, CHUNK_BYTES):
             yield blocks.read(begin, min(CHUNK_BYTES, block.end - begin))
