@@ -209,3 +209,11 @@ def test_lines_above_the_header_may_hold_anything(write: Write, above: str) -> N
 def test_a_layout_that_needs_a_mapping_is_told(write: Write, text: str, words: str) -> None:
     with pytest.raises(LogError, match=words):
         read_log(write(text))
+
+
+def test_a_cell_that_is_no_number_is_told_also_where_a_row_holds_the_units(write: Write) -> None:
+    path = write(table("Zeit,Weg,Kraft\n[s],[mm],[kN]", row7="0.07,OVL,2.5"))
+    channels = {"position_m": {"from": "Weg"}, "force_n": {"from": "Kraft"}}
+    mapping = {"channels": channels, "time": {"from": "Zeit"}, "csv": {"units_row": True}}
+    with pytest.raises(LogError, match="column 'Weg', row 7: 'OVL' is not a number"):
+        read_log(path, mapping)

@@ -128,7 +128,7 @@ def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> Unit:
     """Return the unit of a mapped column: of the mapping, else the file, else its name."""
     if keys.unit is not None:
         return unit_of(keys.unit, channel)
-    symbol = file_unit(raw, name)
+    symbol = column(raw, name).unit
     if symbol:
         return unit_of(symbol, channel)
     header = read_header(name)
