@@ -43,6 +43,21 @@ def test_write_names_the_place_it_can_not_write(tmp_path: Path, place: str) -> N
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "folder"]
 
 
+@pytest.mark.parametrize("name", ["around", "nu\0ll", "nu\0ll/inner"])
+def test_a_place_that_can_not_be_is_an_output_error(tmp_path: Path, name: str) -> None:
+    (tmp_path / "around").symlink_to(tmp_path / "around")
+    parts = bk.load_population("seized_parts").model_copy(update={"duration_s": 0.01})
+    study = bk.SweepStudy(scenario="paper_as_computed", changes={"disturbance.var": 0.1}, runs=2)
+    for write in (
+        lambda place: write_atomically(place, b""),
+        lambda place: bk.run_study(study, place),
+        lambda place: bk.compare_methods(parts, ["paper_pid"], runs=2, out=place),
+        lambda place: write_run(bk.simulate(study.base), place),
+    ):
+        with pytest.raises(OutputError, match="can not be written"):
+            write(tmp_path / name)
+
+
 def test_write_makes_missing_folders(tmp_path: Path) -> None:
     write_atomically(tmp_path / "deep" / "down" / "a.txt", b"content")
     assert [path.read_bytes() for path in (tmp_path / "deep" / "down").iterdir()] == [b"content"]

@@ -1,5 +1,6 @@
 """What can not be run is refused before anything runs."""
 
+import re
 import subprocess
 import sys
 
@@ -26,6 +27,31 @@ def refusal(quick, monkeypatch):
         return str(caught.value)
 
     return of
+
+
+@pytest.mark.parametrize("options", [{}, {"vary": {STICTION: bk.Uniform(low=400.0, high=500.0)}}])
+def test_a_batch_beyond_the_memory(refusal, options):
+    message = refusal(runs=2**32 - 1, **options)
+    assert re.fullmatch(
+        r"runs: 4,294,967,295 take \d{4}\.\d GiB of memory, and \d+\.\d GiB are free; ask for "
+        r"fewer metrics, or for fewer runs at a time \(first_run\)",
+        message,
+    )
+
+
+def test_columns_beyond_the_memory():
+    vary = {STICTION: bk.Uniform(low=400.0, high=500.0)}
+    population, method = bk.load_population("seized_parts"), bk.load_method("steady_feed")
+    levels, many, more = [0.0] * 10**5, 10**15, 10**20
+    for take, words in (
+        (lambda: bk.draw_columns(vary, range(more), seed=0), "runs: 100,000,000,000,000,000,000"),
+        (lambda: bk.draw_columns(vary, range(many), seed=0, design="sobol"), "runs: 1,000,000,"),
+        (lambda: bk.draw_columns(vary, range(9), seed=0, design="sobol", total=many), "runs: 1,0"),
+        (lambda: bk.grid_columns(dict.fromkeys("abc", levels)), "levels: 1,000,000,000,000,000 "),
+        (lambda: bk.run_trial(population, method, runs=range(more), seed=0), "runs: 100,000,000"),
+    ):
+        with pytest.raises(bk.StudyError, match=f"^{words}.* GiB are free; "):
+            take()
 
 
 @pytest.mark.parametrize(

@@ -35,3 +35,14 @@ def test_memory_grows_by_less_than_200_bytes_per_run():
     requested = 8 + 8 + 8  # the run's number, the metric, the number that differs
     growth = (peak[1] - peak[0]) / (many - few)
     assert 8 <= growth <= requested + 200
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits the address space")
+def test_a_batch_beyond_a_limit_of_the_memory_is_an_error():
+    script = (
+        "import resource; resource.setrlimit(resource.RLIMIT_AS, (2**33, 2**33));"
+        "import breakaway as bk; bk.simulate_many(bk.load_scenario('paper_as_computed'), 10**8)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 1  # it was the end of the process
+    assert "StudyError: runs: 100,000,000 take " in done.stderr

@@ -118,7 +118,17 @@ def test_an_unwritable_folder_is_found_before_the_simulation(
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
-@pytest.mark.parametrize("args", [["presets"], ["run", "paper_as_computed", "--json"], ["schema"]])
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["presets"],
+        ["run", "paper_as_computed", "--json"],
+        ["schema"],
+        ["--help"],
+        ["run", "--help"],
+        ["--version"],
+    ],
+)
 def test_a_full_disk_behind_the_output_exits_with_3(args: list[str]) -> None:
     with Path("/dev/full").open("wb") as full:
         failed = subprocess.run(
@@ -130,11 +140,20 @@ def test_a_full_disk_behind_the_output_exits_with_3(args: list[str]) -> None:
     )
 
 
-def test_a_reader_that_stops_is_no_crash() -> None:
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+@pytest.mark.parametrize("args", [["run", "none.toml"], ["run", "--none"], ["none"]])
+def test_a_full_disk_behind_the_error_output_keeps_the_exit_code(args: list[str]) -> None:
+    with Path("/dev/full").open("wb") as full:
+        failed = subprocess.run([*COMMAND, *args], stderr=full, check=False)
+    assert failed.returncode == 2
+
+
+@pytest.mark.parametrize("args", [["schema"], ["--help"], ["study", "--help"], ["--version"]])
+def test_a_reader_that_stops_is_no_crash(args: list[str]) -> None:
     read, write = os.pipe()
     os.close(read)
     ended = subprocess.run(
-        [*COMMAND, "schema"], stdout=write, stderr=subprocess.PIPE, text=True, check=False
+        [*COMMAND, *args], stdout=write, stderr=subprocess.PIPE, text=True, check=False
     )
     os.close(write)
     assert (ended.returncode, ended.stderr) == (3, "")

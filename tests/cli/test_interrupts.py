@@ -27,7 +27,7 @@ for shown, told in ((shown_progress, (at,)), (counted, (1, 9))):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_lost_interrupt_is_heeded_at_the_next_report(name: str) -> None:
     script = LOST.format(name=name, words='*("fitting", "starts")[: len(told) * 2 - 2]')
     done = subprocess.run(
@@ -37,13 +37,14 @@ def test_a_lost_interrupt_is_heeded_at_the_next_report(name: str) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_an_ignored_interrupt_stays_ignored() -> None:
+@pytest.mark.parametrize("name", ["SIGINT", "SIGHUP"])
+def test_an_ignored_interrupt_stays_ignored(name: str) -> None:
     script = (
         "import signal\n"
         "from breakaway.cli.interrupts import note_interrupts, raise_if_interrupted\n"
-        "signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
+        f"signal.signal(signal.{name}, signal.SIG_IGN)\n"
         "note_interrupts()\n"
-        "signal.raise_signal(signal.SIGINT)\n"
+        f"signal.raise_signal(signal.{name})\n"
         "raise_if_interrupted()\n"
         "print('on')\n"
     )

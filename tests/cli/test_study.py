@@ -119,6 +119,18 @@ def test_a_study_does_not_write_over_its_file(call: Call, tmp_path: Path) -> Non
     path = write(tmp_path, "sweep").rename(tmp_path / "study.toml")
     failed = call("study", path, "--out", tmp_path)
     assert (failed.exit_code, "is what was read" in failed.stderr) == (3, True)
+    failed = call("study", path, "--out", tmp_path, "--resume")
+    assert (failed.exit_code, "but no manifest.json" in failed.stderr) == (2, True)
+
+
+def test_a_study_goes_on_by_its_own_file(call: Call, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert call("study", write(tmp_path, "sweep"), "--out", out).exit_code == 0
+    before = (out / "study.toml").read_bytes()
+    (out / "summary.json").unlink()
+    assert call("study", out / "study.toml", "--out", out, "--resume").exit_code == 0
+    assert (out / "summary.json").exists()
+    assert (out / "study.toml").read_bytes() == before
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")

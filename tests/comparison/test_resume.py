@@ -158,6 +158,7 @@ def test_an_edited_table_is_written_anew(whole, tmp_path):
         ({"runs": 23}, "study.runs is 24 there and 23 now"),
         ({"seed": 1}, "study.seed is 0 there and 1 now"),
         ({"laws": ["lugre"]}, "study.laws is "),
+        ({"methods": ["steady_feed", "paper_pid", "paper_fm"]}, "study.methods."),
     ],
 )
 def test_another_comparison_is_refused(whole, changes, words):

@@ -17,12 +17,12 @@ import pytest
 from nptdms import ChannelObject, TdmsWriter
 from scipy.io import savemat
 
+from breakaway.base.free_memory import free_memory_bytes, group_bytes
 from breakaway.errors import LogError
 from breakaway.measure.logs import read_log
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.csv import LONGEST_ROW
 from breakaway.measure.logs.digest import digested
-from breakaway.measure.logs.free_memory import free_memory_bytes, group_bytes
 from breakaway.measure.logs.raw import LONGEST_NAME, MOST_NAMES
 
 ROWS = 200_000
@@ -149,7 +149,7 @@ def test_control_groups_of_version_1_limit_what_is_free(tmp_path: Path) -> None:
 def test_a_limit_of_the_address_space_counts() -> None:
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_AS, (2**31, 2**31));"
-        "from breakaway.measure.logs.free_memory import free_memory_bytes as f; print(f())"
+        "from breakaway.base.free_memory import free_memory_bytes as f; print(f())"
     )
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run(

@@ -195,3 +195,14 @@ def test_stacks_have_the_figures_that_they_say(name):
     # Branches of a full loop: 10/27 h of the stroke apart, of 1 - 5/27 h that is left of it.
     share = stack.hysteresis_share
     assert 10 / 27 * share / (1 - 5 / 27 * share) == pytest.approx(0.15, rel=1e-2)
+
+
+@pytest.mark.parametrize(("unknown", "more"), [(3, 0), (40_000, 39_995)])
+def test_a_file_of_another_kind_is_refused_in_a_few_lines(tmp_path, unknown, more):
+    path = tmp_path / "other.toml"
+    path.write_text("".join(f"k{number} = 1\n" for number in range(unknown)))
+    with pytest.raises(bk.ScenarioError) as caught:
+        bk.load_scenario(path)
+    lines = str(caught.value).split("\n")
+    assert len(lines) == (12 if more else 9)
+    assert (lines[-1] == f"and {more:,} more") == bool(more)

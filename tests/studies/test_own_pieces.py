@@ -190,6 +190,18 @@ def test_a_damaged_list_of_digests_costs_time_only(asked, whole, damage):
     assert contents(whole) == before
 
 
+@pytest.mark.parametrize("name", ["../note", "parts/../../note", "/note", ".", "parts/.."])
+def test_a_digest_names_no_file_beyond_its_folder(asked, whole, name):
+    before = contents(whole)
+    (whole.parent / "note").write_text("of somebody else")
+    with (whole / DIGESTS).open("a") as file:
+        file.write(f"{'0' * 64}  {name}\n")
+    assert name not in Pieces(whole, "identity").names()
+    _ = open_study(whole).summary
+    run_study(asked, whole, resume=True, notice=lambda sentence: pytest.fail(sentence))
+    assert contents(whole) == before
+
+
 def test_a_line_that_was_not_finished_does_not_spoil_the_next(tmp_path):
     pieces = Pieces(tmp_path, "identity")
     pieces.write("a", b"content")

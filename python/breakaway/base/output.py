@@ -20,6 +20,8 @@ STAGING_FOLDER = re.compile(r"\.writing\.[a-z0-9_]{8}")
 """Names of the folders in which files are collected."""
 STAGING_FILE = re.compile(r"\..+\.[0-9a-f]{16}")
 """Names under which files are written."""
+UNUSABLE = (OSError, ValueError, RuntimeError)
+"""What making a place raises: a path may have a null character, or be a link to itself."""
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -42,7 +44,7 @@ def write_atomically(path: Path, content: bytes) -> None:
             return
         with suppress(FileExistsError):  # a file in the way is told below
             path.parent.mkdir(parents=True)
-    except OSError as error:
+    except UNUSABLE as error:
         raise not_written(path, error) from None
     _write_and_rename(path, content)
 
@@ -185,7 +187,7 @@ def output_folder(folder: Path, kind: Kind, names: Collection[str] = ()) -> Iter
     try:
         folder.mkdir(parents=True, exist_ok=True)
         staging = Path(tempfile.mkdtemp(dir=folder, prefix=".writing."))
-    except OSError as error:
+    except UNUSABLE as error:
         raise not_written(folder, error) from None
     moved = False
     try:
@@ -226,9 +228,9 @@ def claim(folder: Path, kind: Kind, names: Collection[str] = ()) -> None:
     refuse_files_of_others(folder, kind, names)
 
 
-def not_written(path: Path, error: OSError) -> OutputError:
+def not_written(path: Path, error: Exception) -> OutputError:
     """Say that a place can not be written, and why."""
-    reason = error.strerror or str(error)
+    reason = getattr(error, "strerror", None) or str(error)
     if isinstance(error, FileExistsError):
         reason = "is a file, not a folder"
     return OutputError(f"{path}: can not be written: {reason}; give a folder that you can write to")

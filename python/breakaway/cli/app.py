@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
@@ -15,7 +17,8 @@ from breakaway.cli.identify import identify
 from breakaway.cli.reproduce import reproduce
 from breakaway.cli.run import run
 from breakaway.cli.scenarios import init, presets, schema
-from breakaway.cli.show import ClosedOutput, say, say_aside
+from breakaway.cli.show import say, say_aside
+from breakaway.cli.streams import ClosedOutput
 from breakaway.cli.study import study
 from breakaway.cli.tune import tune
 from breakaway.errors import BreakawayError
@@ -43,18 +46,30 @@ EPILOG = """
 class Commands(TyperGroup):
     """Commands whose errors end in a message and an exit code."""
 
-    def invoke(self, ctx: Any) -> Any:  # noqa: ANN401 - typer keeps the types of its click private
+    # typer keeps the types of its click private
+    def make_context(self, *args: Any, **options: Any) -> Any:  # noqa: ANN401
+        """Read the command line; --help and --version are shown on the way."""
+        with _told_ends():
+            return super().make_context(*args, **options)
+
+    def invoke(self, ctx: Any) -> Any:  # noqa: ANN401
         """Run the command that was asked for."""
-        try:
+        with _told_ends():
             return super().invoke(ctx)
-        except BreakawayError as error:
-            say_aside(f"error: {error}")
-            raise typer.Exit(error.exit_code) from None
-        except ClosedOutput as error:
-            raise typer.Exit(error.exit_code) from None
-        except KeyboardInterrupt:
-            say_aside("interrupted")
-            raise typer.Exit(INTERRUPTED) from None
+
+
+@contextmanager
+def _told_ends() -> Iterator[None]:
+    try:
+        yield
+    except BreakawayError as error:
+        say_aside(f"error: {error}")
+        raise typer.Exit(error.exit_code) from None
+    except ClosedOutput as error:
+        raise typer.Exit(error.exit_code) from None
+    except KeyboardInterrupt:
+        say_aside("interrupted")
+        raise typer.Exit(INTERRUPTED) from None
 
 
 app = typer.Typer(

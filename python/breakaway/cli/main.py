@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import sys
 
 from breakaway.cli.interrupts import note_interrupts
+from breakaway.cli.streams import prepare_streams
 
 
 def main() -> None:
@@ -13,9 +13,7 @@ def main() -> None:
 
     A request to terminate ends it as Ctrl-C does, so that nothing is left half written.
     """
-    for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # closed by the caller
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123
+    prepare_streams()
     try:
         note_interrupts()
         from breakaway.cli.app import app

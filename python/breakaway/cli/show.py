@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import math
-import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -19,19 +18,13 @@ from rich.table import Table
 from rich.text import Text
 
 from breakaway.base.text import terminal, visible, visible_lines
-from breakaway.errors import OutputError
+from breakaway.cli.streams import told_failures
 
 PIPED_WIDTH = 10_000
 """Width, in characters, for output that no terminal shows: lines are never broken there."""
 
 PROSE_WIDTH = 18
 """Narrowest column of prose, in characters."""
-
-
-class ClosedOutput(Exception):  # noqa: N818 - an end, not an error
-    """Whoever read the standard output has stopped reading, as ``head`` does."""
-
-    exit_code = OutputError.exit_code
 
 
 def say(*parts: RenderableType) -> None:
@@ -165,16 +158,9 @@ def _encoding() -> str:
 
 def _write(text: str) -> None:
     encoding = _encoding()
-    try:
+    with told_failures():
         sys.stdout.write(_encodable(text, encoding))
         sys.stdout.flush()
-    except BrokenPipeError:
-        _discard_output()
-        raise ClosedOutput from None
-    except OSError as error:
-        _discard_output()
-        reason = error.strerror or str(error)
-        raise OutputError(f"standard output: can not be written: {reason}") from None
 
 
 def _encodable(text: str, encoding: str) -> str:
@@ -187,8 +173,3 @@ def _encodable(text: str, encoding: str) -> str:
 
 _ASCII = str.maketrans({"µ": "u", "²": "^2", "±": "+/-", "–": "-", "‖": "|"})
 """What stands for the signs of units where an old encoding lacks them."""
-
-
-def _discard_output() -> None:
-    """Let the interpreter flush what is left into nothing when it exits."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

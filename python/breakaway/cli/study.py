@@ -49,7 +49,7 @@ def study(
     from breakaway.ask.studies import load_study, run_study
 
     asked = load_study(file)
-    if is_there(out):
+    if is_there(out) and not resume:  # what goes on may be asked by its own study.toml
         from breakaway.base.output import refuse_to_overwrite
 
         refuse_to_overwrite(file, out / "study.toml")

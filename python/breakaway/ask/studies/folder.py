@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
 from io import StringIO
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from breakaway.ask.studies.pieces import Pieces
 from breakaway.base.output import (
     STAGING_FILE,
     STAGING_FOLDER,
+    UNUSABLE,
     not_written,
     open_inside,
     remove_leftovers,
@@ -57,7 +59,7 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
         else:
             _refuse_filled(folder, called)
         (folder / PARTS).mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+    except UNUSABLE as error:
         raise not_written(folder, error) from None
     with _locked(folder, called):
         remove_leftovers(folder)
@@ -125,8 +127,15 @@ def _differences(found: Any, asked: Any, path: str) -> Iterator[str]:  # noqa: A
         for key in [*found, *(key for key in asked if key not in found)]:
             inner = f"{path}.{key}" if path else key
             yield from _differences(found.get(key), asked.get(key), inner)
+    elif _has_tables(found) and _has_tables(asked):
+        for number, (there, now) in enumerate(zip_longest(found, asked)):
+            yield from _differences(there, now, f"{path}.{number}")
     elif found != asked:
         yield f"{path} is {_short(found)} there and {_short(asked)} now"
+
+
+def _has_tables(value: object) -> bool:
+    return isinstance(value, list) and any(isinstance(inner, Mapping) for inner in value)
 
 
 def _short(value: object) -> str:

@@ -25,7 +25,8 @@ DIGESTS = "digests.txt"
 """The journal: a digest and a name in each line."""
 MOST_DIGESTS_BYTES = 256 * 2**20
 """Most bytes of a journal: two million files."""
-LINE = re.compile(r"([0-9a-f]{64})  (\S.*)")
+LINE = re.compile(r"([0-9a-f]{64})  ((?:parts/)?[^\s./\\][^/\\]*)")
+"""A digest, and a name in the folder or in that of its parts: nothing beyond is looked at."""
 BLOCK_BYTES = 2**20
 MISSING = "is missing"
 

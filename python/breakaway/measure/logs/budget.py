@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from breakaway.base.free_memory import free_memory_bytes
 from breakaway.errors import LogError
-from breakaway.measure.logs.free_memory import free_memory_bytes
 
 SHARE = 0.5
 """Part of the free memory that a file may take where nothing is said: its log takes as much."""

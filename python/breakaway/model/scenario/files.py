@@ -48,7 +48,7 @@ def load_scenario(source: str | Path) -> Scenario:
     ------
     ScenarioError
         There is no such preset or file, it is not TOML, or a value is not valid; the message
-        names every such field.
+        names such fields, ten at most.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def parse_toml(model: type[AnyModel], text: str, source: str) -> AnyModel:
     Raises
     ------
     ScenarioError
-        It is not TOML, or a value is not valid; the message names every such field.
+        It is not TOML, or a value is not valid; the message names such fields, ten at most.
 
     """
     values = table_of(text, source, ScenarioError)

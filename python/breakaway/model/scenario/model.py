@@ -14,9 +14,6 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from breakaway.base.text import LONGEST_NAME, brief, shown, visible
 from breakaway.errors import ScenarioError
 
-MOST_LINES = 20
-"""Most fields that a message names; a scenario has some ten tables."""
-
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -81,11 +78,17 @@ def holds_number(annotation: object) -> bool:
     return annotation is float or any(map(holds_number, getattr(annotation, "__args__", ())))
 
 
+MOST_EXPLAINED = 10
+"""Most invalid fields that a message names."""
+
+
 def explain(error: ValidationError, model: type[BaseModel]) -> str:
     """One line for each invalid field: its path, its value, the valid range and the remedy."""
-    lines = list(dict.fromkeys(_line(detail, model) for detail in error.errors()))
-    more = [f"and {len(lines) - MOST_LINES:,} more"] if len(lines) > MOST_LINES else []
-    return "\n".join(lines[:MOST_LINES] + more)
+    looked_at = error.errors()[:MOST_EXPLAINED]
+    lines = [*dict.fromkeys(_line(detail, model) for detail in looked_at)]
+    if error.error_count() > len(looked_at):
+        lines.append(f"and {error.error_count() - len(looked_at):,} more")
+    return "\n".join(lines)
 
 
 def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway import _core
+from breakaway.base.free_memory import check_fits
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import (
     Distribution,
@@ -63,8 +65,8 @@ def draw_columns(
     Raises
     ------
     StudyError
-        There is no such design, the runs are not among it, something is not a distribution, or
-        shared samples differ in length.
+        There is no such design, the runs are not among it, something is not a distribution,
+        shared samples differ in length, or the values can not fit into the free memory.
 
     Examples
     --------
@@ -85,6 +87,8 @@ def draw_columns(
         if not isinstance(distribution, Uniform | LogUniform | Normal | LogNormal | Samples):
             raise StudyError(f"vary[{path!r}]: {distribution!r} is not a distribution")
     _check_shared(vary)
+    drawn = runs.stop - runs.start if design == "random" else size  # a design is made whole
+    check_fits("runs", drawn, 8.0 * (len(vary) + 1), "draw fewer at a time")
     points = {} if design == "random" else _points(design, len(vary), size, seed)
     columns = {}
     for number, (path, distribution) in enumerate(vary.items()):
@@ -145,6 +149,11 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
     levels : mapping
         Values by dotted path.
 
+    Raises
+    ------
+    StudyError
+        The combinations can not fit into the free memory.
+
     Examples
     --------
     >>> columns = grid_columns({"disturbance.var": [0.0, 0.1], "part.mass_kg": [1.0, 2.0]})
@@ -152,5 +161,7 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
     ([0.0, 0.0, 0.1, 0.1], [1.0, 2.0, 1.0, 2.0])
 
     """
+    count = math.prod(map(len, levels.values()))
+    check_fits("levels", count, 8.0 * len(levels), "give fewer levels")
     tables = np.meshgrid(*(np.asarray(v, dtype=np.float64) for v in levels.values()), indexing="ij")
     return {path: table.ravel() for path, table in zip(levels, tables, strict=True)}

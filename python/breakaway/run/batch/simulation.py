@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel
 
 from breakaway import _core
+from breakaway.base.free_memory import check_fits
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
@@ -84,7 +85,8 @@ def simulate_many(
     Raises
     ------
     StudyError
-        What is to vary, a metric or a number of runs is not valid, before anything runs.
+        What is to vary, a metric or a number of runs is not valid, or the batch can not fit into
+        the free memory; nothing has run then.
     ScenarioError
         It is no scenario, or the controller can not be designed for this joint.
     KeyboardInterrupt
@@ -115,11 +117,26 @@ def simulate_many(
         )
     nominal = with_nominal_controller(scenario)
     check_paths(nominal, vary or {})
+    check_batch_fits(count, len(vary or {}), len({*names} - {"outcome"}))
     columns = _columns(nominal, vary or {}, range(first, first + count), design)
     check_values(nominal, columns, first)
     run_index = np.arange(first, first + count, dtype=np.uint64)
     tell = None if progress is None else lambda done: progress(done, count)
     return run_columns(nominal, run_index, columns, names, workers, tell, instructions)
+
+
+def check_batch_fits(runs: int, varied: int, metrics: int) -> None:
+    """Refuse a batch that can not fit into the free memory.
+
+    Raises
+    ------
+    StudyError
+        It can not.
+
+    """
+    run, number, metric = 16, 24, 16  # bytes, those of copies among them
+    each = run + number * varied + metric * metrics
+    check_fits("runs", runs, each, "ask for fewer metrics, or for fewer runs at a time (first_run)")
 
 
 def run_columns(

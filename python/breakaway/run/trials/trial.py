@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from breakaway.base.equality import ByValue
 from breakaway.base.threads import thread_count
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import Gentleness, Law, PartPopulation
+from breakaway.model.scenario.population import QUANTITIES, Gentleness, Law, PartPopulation
 from breakaway.model.scenario.scenario import Scenario
-from breakaway.run.batch import run_columns
+from breakaway.run.batch import check_batch_fits, run_columns
 from breakaway.run.finished import Run
 from breakaway.run.trials.parts import draw_parts, part_columns, scenario_of, steps_per_period
 
@@ -155,6 +155,7 @@ def run_trial(
 
     """
     workers = thread_count(threads)
+    check_batch_fits(runs.stop - runs.start, len(QUANTITIES), len(TRIAL_METRICS))
     parts = draw_parts(population, runs, seed=seed)
     steps = steps_per_period(population, parts)
     metrics = {name: np.full(len(runs), np.nan) for name in TRIAL_METRICS}

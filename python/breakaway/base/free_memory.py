@@ -7,6 +7,11 @@ import os
 import sys
 from pathlib import Path
 
+from breakaway.errors import StudyError
+
+ALWAYS_BYTES = 2**26
+"""So little is taken without a look at the system."""
+
 
 def free_memory_bytes() -> float:
     """Return the least that machine, control groups and limits of the process leave.
@@ -18,6 +23,41 @@ def free_memory_bytes() -> float:
 
     """
     return max(0.0, min(_machine_bytes(), group_bytes(Path("/")), _process_bytes()))
+
+
+def check_fits(field: str, count: int, bytes_each: float, remedy: str) -> None:
+    """Refuse what can not fit into the free memory, before any of it is taken.
+
+    Parameters
+    ----------
+    field : str
+        What says how many.
+    count : int
+        How many.
+    bytes_each : float
+        The least that each takes.
+    remedy : str
+        What to do.
+
+    Raises
+    ------
+    StudyError
+        They take more than is free.
+
+    Examples
+    --------
+    >>> check_fits("runs", 10**15, 100.0, "run them in batches")
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.StudyError: runs: 1,000,000,000,000,000 take 93132257.5 GiB of memory, ...
+
+    """
+    needed = count * bytes_each
+    if needed > ALWAYS_BYTES and needed > (free := free_memory_bytes()):
+        raise StudyError(
+            f"{field}: {count:,} take {needed / 2**30:.1f} GiB of memory, and {free / 2**30:.1f} "
+            f"GiB are free; {remedy}"
+        )
 
 
 if sys.platform == "win32":
