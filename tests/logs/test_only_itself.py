@@ -230,7 +230,7 @@ def test_parquet_columns_in_another_file(tmp_path: Path) -> None:
         writer.write_table(table)
     found[0].set_file_path("beside.parquet")
     found[0].write_metadata_file(path)
-    assert_refused(path, "is kept in another file, which is not opened")
+    assert_refused(path, "is damaged, or is not a Parquet file")
 
 
 def tdms(path: Path, **properties: Any) -> None:
