@@ -91,7 +91,7 @@ def run_study(
     --------
     >>> import tempfile
     >>> import breakaway as bk
-    >>> study = SweepStudy(
+    >>> study = bk.SweepStudy(
     ...     scenario="paper_as_computed",
     ...     changes={"disturbance.var": 0.1, "timing.duration_s": 0.01},
     ...     runs=20,
