@@ -217,3 +217,10 @@ def test_a_cell_that_is_no_number_is_told_also_where_a_row_holds_the_units(write
     mapping = {"channels": channels, "time": {"from": "Zeit"}, "csv": {"units_row": True}}
     with pytest.raises(LogError, match="column 'Weg', row 7: 'OVL' is not a number"):
         read_log(path, mapping)
+
+
+def test_a_layout_with_the_wrong_delimiter_is_told_one_that_reads_it(write: Write) -> None:
+    path = write(table())
+    with pytest.raises(LogError, match=r'csv = { delimiter = ",", decimal = "\." }'):
+        read_log(path, {"csv": {"delimiter": ";", "decimal": ","}})
+    assert read_log(path, {"csv": {"delimiter": ",", "decimal": "."}}).rows == read_log(path).rows

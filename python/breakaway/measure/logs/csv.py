@@ -177,11 +177,11 @@ def _header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], lis
     check_names(path, len(header), max(map(len, header), default=0))
     mark = next((mark for mark in ";\t," if mark in header[0]), None)
     if len(header) == 1 and mark:
-        shown = mark.replace("\t", r"\t")
+        shown, decimal = mark.replace("\t", r"\t"), "." if mark == "," else ","
         raise LogError(
             f"{path.name}: the header '{brief(header[0])}' is one cell; columns must be separated "
             "by commas and decimals by points: export it so, or write a mapping with "
-            f'csv = {{ delimiter = "{shown}", decimal = "," }}'
+            f'csv = {{ delimiter = "{shown}", decimal = "{decimal}" }}'
         )
     units = [cell.strip().strip("[]()") for cell in top[1]] if layout.units_row else []
     units += [""] * (len(header) - len(units))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import gc
 import importlib
 import io
 import logging
@@ -149,11 +148,8 @@ def need(module: str, package: str, extra: str, path: Path, what: str) -> Any:  
         ) from None
 
 
-def guarded(what: str, rings: bool = False) -> Callable[[Reader], Reader]:
-    """Turn whatever a file library raises in a reader into a `LogError`, and keep it quiet.
-
-    ``rings``: the library's half-built objects hold each other, and must be collected.
-    """
+def guarded(what: str) -> Callable[[Reader], Reader]:
+    """Turn whatever a file library raises in a reader into a `LogError`, and keep it quiet."""
 
     def guard(reader: Reader) -> Reader:
         @functools.wraps(reader)
@@ -165,8 +161,6 @@ def guarded(what: str, rings: bool = False) -> Callable[[Reader], Reader]:
                     raise
                 except Exception as error:  # a damaged file raises dozens of unrelated types
                     reason = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
-                if rings:
-                    gc.collect()
             raise LogError(
                 f"{path.name}: is damaged, or is not {what} ({reason}); export the log again, or "
                 "name another format"
