@@ -12,11 +12,14 @@ use support::Rig;
 /// What backward levels are multiplied by.
 const RATIO: f64 = 0.6;
 
+fn asymmetric() -> Lugre<f64> {
+    Lugre { backward_ratio: Maybe::some(RATIO), ..laws::endless() }
+}
+
 /// Sliding at a speed at which the Stribeck curve has fallen to F_c, joints carry ± their level.
 #[test]
 fn sliding_backward_they_carry_a_multiple() {
-    for (name, joint) in laws::all(Lugre { backward_ratio: Maybe::some(RATIO), ..laws::endless() })
-    {
+    for (name, joint) in laws::all_with_backward_ratio(asymmetric()) {
         for (v, level) in [(0.5, 360.0), (-0.5, -360.0 * RATIO)] {
             let mut state = PlantState::at_rest();
             let force = (0..10_000).fold(0.0, |_, _| impose_motion(&joint, &mut state, v, 1e-6));
@@ -29,8 +32,7 @@ fn sliding_backward_they_carry_a_multiple() {
 /// Held at 97 % of the level of the direction they stay, at 103 % they go.
 #[test]
 fn they_break_loose_at_the_level_of_the_direction() {
-    for (name, joint) in laws::all(Lugre { backward_ratio: Maybe::some(RATIO), ..laws::endless() })
-    {
+    for (name, joint) in laws::all_with_backward_ratio(asymmetric()) {
         for breakaway_n in [450.0, -450.0 * RATIO] {
             let speed = |share: f64| {
                 let mut rig = Rig::at(joint, 0.0);

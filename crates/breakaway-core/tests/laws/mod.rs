@@ -44,8 +44,8 @@ pub(crate) fn coulomb_stiction(law: Lugre<f64>) -> Joint<f64> {
 }
 
 /// Every law with the numbers of one joint.
-pub(crate) fn all(law: Lugre<f64>) -> [(&'static str, Joint<f64>); 6] {
-    [
+pub(crate) fn all(law: Lugre<f64>) -> Vec<(&'static str, Joint<f64>)> {
+    vec![
         ("lugre", Joint::Lugre(law)),
         ("elasto_plastic", elasto_plastic(law)),
         ("gms of 4", Joint::Gms(gms(law, 4))),
@@ -53,6 +53,20 @@ pub(crate) fn all(law: Lugre<f64>) -> [(&'static str, Joint<f64>); 6] {
         ("two_region", two_region(law)),
         ("coulomb_stiction", coulomb_stiction(law)),
     ]
+}
+
+/// Those of [`all`] whose levels can differ between the directions.
+pub(crate) fn all_with_backward_ratio(law: Lugre<f64>) -> Vec<(&'static str, Joint<f64>)> {
+    let mut all = all(law);
+    all.retain(|(_, joint)| {
+        let mut found = false;
+        joint.map(&mut |name, number| {
+            found |= name.field() == "backward_ratio";
+            number
+        });
+        found
+    });
+    all
 }
 
 /// A joint whose level does not fall along the guide.

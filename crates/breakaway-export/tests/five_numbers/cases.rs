@@ -135,7 +135,7 @@ fn timings(one_sample_delay: bool) -> [Timing<f64>; 2] {
 }
 
 /// LuGre with every option, and the laws that are not in the full product.
-fn more_joints() -> [Joint<f64>; MORE_JOINTS] {
+fn more_joints() -> Vec<Joint<f64>> {
     let friction = Lugre {
         damping_velocity_m_per_s: Maybe::some(0.4),
         backward_ratio: Maybe::some(0.7),
@@ -146,7 +146,7 @@ fn more_joints() -> [Joint<f64>; MORE_JOINTS] {
         Gms { friction, attraction_n_per_s: 2e6, elements: 5, stiffness_shares, level_shares };
     let (stiffness_shares, level_shares) = default_shares(10);
     let plain = Gms { friction: lugre(), elements: 10, stiffness_shares, level_shares, ..gms };
-    [
+    vec![
         Joint::Lugre(friction),
         Joint::TwoRegion(TwoRegion { backward_ratio: Maybe::some(0.7), ..two_region() }),
         Joint::ElastoPlastic(ElastoPlastic { friction, elastic_share: 0.6 }),
@@ -176,12 +176,8 @@ fn more_cases(cases: &[Case]) -> Vec<Case> {
     extractions.map(|extraction| Case { name: format!("{extraction:?}"), extraction }).collect()
 }
 
-/// How many [`more_joints`] there are.
-const MORE_JOINTS: usize = 6;
-/// Cases of each of them.
+/// Cases of each of [`more_joints`].
 const MORE_PER_JOINT: usize = 5;
-/// How many [`more_cases`] there are.
-pub(crate) const MORE_CASES: u32 = 30;
 
 /// All cases.
 pub(crate) fn all() -> Vec<Case> {
@@ -325,7 +321,7 @@ const IMPACTS: TimedImpacts<f64> = TimedImpacts {
 /// What can push, with what may push it, what it sees and who watches.
 type Pushed = (Actuator<f64>, Controller<f64>, Option<Sensors<f64>>, Option<Watch<f64>>);
 
-fn pushed() -> [Pushed; PUSHED] {
+fn pushed() -> Vec<Pushed> {
     let ramp = Controller::ForceRamp(ForceRamp { rate_n_per_s: 3e5, travel_m: LENGTH_M });
     let settings = SteadyFeed { speed_m_per_s: 0.35, approach_m_per_s: 0.02, approach_s: 2e-4 };
     let feed = Controller::SteadyFeed(settings);
@@ -343,7 +339,7 @@ fn pushed() -> [Pushed; PUSHED] {
     let pulsed = shared(&controllers()[12..]);
     let (seen, watch) = (Some(sensors()), Some(WATCH));
     let push_only = Actuator::PushOnly(PushOnly { force_max_n: 800.0 });
-    [
+    vec![
         (FORCE, pid, None, None),
         (FORCE, pulsed, seen, None),
         (FORCE, ramp, seen, watch),
@@ -359,13 +355,13 @@ fn pushed() -> [Pushed; PUSHED] {
     ]
 }
 
-/// [`pushed`] on one joint of each law, with one step in a period and three.
+/// [`pushed`] on [`one_joint_of_each_law`], with one step in a period and three.
 fn pushed_cases(cases: &[Case]) -> Vec<Case> {
     let base = cases[0].extraction;
-    let [lugre, two_region, elasto_plastic, _, gms, rigid] = more_joints();
+    let joints = one_joint_of_each_law();
     let mut all = Vec::new();
     for (i, (actuator, controller, sensors, watch)) in pushed().into_iter().enumerate() {
-        for (j, joint) in [lugre, two_region, elasto_plastic, gms, rigid].into_iter().enumerate() {
+        for (j, &joint) in joints.iter().enumerate() {
             let steps_per_period = [1, 3][(i + j) % 2];
             let timing = Timing { steps_per_period, one_sample_delay: i % 2 == 0, ..base.timing };
             let case = Extraction { joint, actuator, controller, sensors, watch, timing, ..base };
@@ -375,10 +371,17 @@ fn pushed_cases(cases: &[Case]) -> Vec<Case> {
     all
 }
 
-/// How many [`pushed`] there are, each on five joints.
-const PUSHED: usize = 12;
-/// Cases of all of them.
-pub(crate) const PUSHED_CASES: u32 = 60;
+/// [`more_joints`] with one of elements instead of two.
+fn one_joint_of_each_law() -> Vec<Joint<f64>> {
+    let mut joints = more_joints();
+    joints.remove(3);
+    joints
+}
+
+/// How many [`more_cases`] and [`pushed_cases`] there are.
+pub(crate) fn more_count() -> usize {
+    more_joints().len() * MORE_PER_JOINT + pushed().len() * one_joint_of_each_law().len()
+}
 
 /// Cases in which a watch stops some parts; these need not leave their joint.
 pub(crate) fn nervous() -> Vec<Case> {
