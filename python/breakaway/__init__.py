@@ -69,6 +69,7 @@ if TYPE_CHECKING:
         identify_inertia_friction,
     )
     from breakaway.measure.logs import Channel, Finding, Log, derive_motion, noise_floor, read_log
+    from breakaway.model.friction.imposed import ImposedMotion, impose_motion
     from breakaway.model.scenario import (
         BandLimitedDisturbance,
         Contact,
@@ -131,7 +132,6 @@ if TYPE_CHECKING:
     )
     from breakaway.run.batch import Batch, draw_columns, grid_columns, simulate_many
     from breakaway.run.finished import Outcome, Run, RunMetrics
-    from breakaway.run.imposed import ImposedMotion, impose_motion
     from breakaway.run.resolution import resolve
     from breakaway.run.simulation import simulate
     from breakaway.run.trials import Trial, draw_parts, run_trial
@@ -160,7 +160,7 @@ _HOMES = {
         "identify",
         "identify_inertia_friction",
     ),
-    "breakaway.run.imposed": ("ImposedMotion", "impose_motion"),
+    "breakaway.model.friction.imposed": ("ImposedMotion", "impose_motion"),
     "breakaway.measure.logs": (
         "Channel",
         "Finding",

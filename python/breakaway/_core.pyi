@@ -1,7 +1,7 @@
 """The compiled core of breakaway."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +15,20 @@ def impose(
     joint: Mapping[str, Any],
     start_m: float,
     period_s: float,
-    velocities_m_per_s: Sequence[float],
+    velocity_m_per_s: NDArray[np.float64],
 ) -> list[bytes]: ...
-def breakaway_force(joint: Mapping[str, Any], position_m: float) -> float: ...
+def breakaway_force(joint: Mapping[str, Any], position_m: NDArray[np.float64]) -> bytes: ...
+def steady_friction(
+    joint: Mapping[str, Any],
+    position_m: NDArray[np.float64],
+    velocity_m_per_s: NDArray[np.float64],
+) -> list[bytes]: ...
+def friction_curve(
+    joint: Mapping[str, Any],
+    position_m: NDArray[np.float64],
+    velocity_m_per_s: NDArray[np.float64],
+) -> list[bytes]: ...
+def law_form(joint: Mapping[str, Any]) -> Literal["bristle", "elements", "rigid"]: ...
 
 OUTCOMES: Sequence[str]
 

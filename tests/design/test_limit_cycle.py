@@ -12,7 +12,8 @@ from breakaway.design import (
     limit_cycles,
     measured_cycles,
 )
-from breakaway.design.describing_function import friction_over_period, harmonic, midpoints
+from breakaway.design.describing_function import harmonic, midpoints
+from breakaway.model.friction.periodic import friction_over_period
 
 BASE = bk.load_scenario("paper_as_computed")
 JOINT = BASE.joint
@@ -51,7 +52,7 @@ def test_a_stiff_bristle_is_the_friction_curve():
     stiff = JOINT.model_copy(update={"stiffness_n_per_m": 1e13, "damping_n_s_per_m": 0.0})
     v = 0.05 + 0.08 * np.cos(midpoints(1024))
     w, x = np.array(1800.0), np.array(0.0)
-    force = friction_over_period(stiff, v, w, residual_n=9.81, position_m=x)
+    force = friction_over_period(stiff, v, w, position_m=x)
     curve = (360.0 + 90.0 * np.exp(-((v / 0.09) ** 2))) * np.sign(v)
     assert abs(harmonic(force, 1) - harmonic(curve, 1)) < 0.01 * abs(harmonic(curve, 1))
 
@@ -65,9 +66,7 @@ def test_friction_over_a_period_is_what_the_core_computes():
     long = JOINT.model_copy(update={"engagement_length_m": 1e3, "residual_n": 1.0})
     imposed = bk.impose_motion(long, velocity_m_per_s=velocity, period_s=period_s, start_m=0.0)
     theirs = imposed.joint_force_n[-n:]
-    ours = friction_over_period(
-        long, velocity[-n:], np.array(w), residual_n=1.0, position_m=np.array(0.0)
-    )
+    ours = friction_over_period(long, velocity[-n:], np.array(w), position_m=np.array(0.0))
     assert np.max(np.abs(theirs - ours)) < 0.02 * np.max(np.abs(ours))
     assert abs(harmonic(theirs, 1) - harmonic(ours, 1)) < 0.01 * abs(harmonic(ours, 1))
 

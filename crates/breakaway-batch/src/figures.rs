@@ -4,6 +4,7 @@ use breakaway_core::metrics::Groups;
 
 use crate::run::{Job, Run};
 use breakaway_core::actuator::{Actuator, FeedAxis, Piezo, Tip};
+use breakaway_core::joint::Law;
 use std::f64::consts::PI;
 
 /// A figure of a finished run.

@@ -14,6 +14,7 @@ mod lockstep;
 pub mod normal;
 pub mod rig;
 pub mod run;
+pub mod steady;
 mod trusted;
 #[cfg(feature = "yardstick")]
 pub mod yardstick;
@@ -28,3 +29,6 @@ pub use rig::{
     Differentiated, Kept, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
 };
 pub use run::{Job, Run, TRACE_COLUMNS, Trace, run};
+pub use steady::{
+    FrictionCurve, SteadyFriction, breakaway_forces, friction_curve, steady_friction,
+};

@@ -282,7 +282,7 @@ impl<R: Real> Extraction<R> {
             stop_reason: state.watch.reason,
             next_position_m: state.plant.position_m,
             next_velocity_m_per_s: state.plant.velocity_m_per_s,
-            next_stored_j: self.joint.stored_energy_j(&state.plant),
+            next_stored_j: state.plant.stored_energy_j(&self.joint),
         }
     }
 

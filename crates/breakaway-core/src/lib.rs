@@ -14,7 +14,7 @@
 //! # Example
 //! ```
 //! use breakaway_core::Maybe;
-//! use breakaway_core::joint::{Joint, Lugre};
+//! use breakaway_core::joint::{Joint, Law, Lugre};
 //! let joint = Joint::Lugre(Lugre {
 //!     stiction_n: 450.0, coulomb_n: 360.0, stiffness_n_per_m: 3.6e7, damping_n_s_per_m: 9000.0,
 //!     viscous_n_s_per_m: Maybe::none(), stribeck_velocity_m_per_s: 0.09, engagement_length_m: 0.1,
@@ -30,6 +30,7 @@
 extern crate std;
 
 pub mod exp2;
+mod float;
 mod fused;
 mod parameters;
 

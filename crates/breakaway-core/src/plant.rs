@@ -57,6 +57,12 @@ impl<R: Real> PlantState<R> {
     pub(crate) fn joint(&self) -> JointState<R> {
         JointState { bristle_m: self.bristle_m, sliding: self.sliding }
     }
+
+    /// What the bristles of a joint in this state hold, in J.
+    #[inline(always)]
+    pub fn stored_energy_j(&self, joint: &impl Law<R>) -> R {
+        joint.stored_energy_j(self.bristle_m, &self.elements)
+    }
 }
 
 /// How the plant is stepped.

@@ -3,8 +3,6 @@
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::{exp2, fused};
-
 /// A computation that may be compiled on its own: a part of a step that would make it too large.
 ///
 /// A type and not a closure, because closures are not inlined into the caller's instruction set.
@@ -195,76 +193,5 @@ pub trait Real:
     #[inline(always)]
     fn is_set(self) -> Self::Mask {
         Self::constant(0.5).lt(self)
-    }
-}
-
-macro_rules! impl_real {
-    ($float:ty, $round:expr, $exp2:expr, $fma:path) => {
-        impl Real for $float {
-            type Mask = bool;
-            const ROUND: f64 = $round;
-
-            #[inline(always)]
-            fn constant(value: f64) -> Self {
-                value as $float
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> bool {
-                self < other
-            }
-            #[inline(always)]
-            fn le(self, other: Self) -> bool {
-                self <= other
-            }
-            #[inline(always)]
-            fn select(mask: bool, yes: Self, no: Self) -> Self {
-                if mask { yes } else { no }
-            }
-            #[inline(always)]
-            fn known(holds: bool) -> bool {
-                holds
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                <$float>::abs(self)
-            }
-            #[inline(always)]
-            fn mul_add(self, factor: Self, addend: Self) -> Self {
-                $fma(self, factor, addend)
-            }
-            #[inline(always)]
-            fn exp2_parts(self) -> (Self, Self) {
-                $exp2(self)
-            }
-        }
-    };
-}
-
-impl_real!(f64, 6_755_399_441_055_744.0, exp2::exp2_f64, fused::fma_f64);
-impl_real!(f32, 12_582_912.0, exp2::exp2_f32, fused::fma_f32);
-
-#[cfg(test)]
-mod tests {
-    use super::Real;
-
-    #[test]
-    fn sign_of_zeros_and_signs() {
-        assert_eq!(Real::sign(-0.0_f64), 0.0);
-        assert_eq!(Real::sign(-2.0_f64), -1.0);
-        assert_eq!(Real::sign(1e-300_f64), 1.0);
-    }
-
-    #[test]
-    fn rounding_goes_to_the_nearest() {
-        for (value, whole) in [(0.49, 0.0), (-2.6, -3.0), (7.5, 8.0), (8.5, 8.0), (1e6, 1e6)] {
-            assert_eq!(Real::round(value), whole);
-            assert_eq!(Real::round(value as f32), whole as f32);
-        }
-    }
-
-    #[test]
-    fn comparisons_with_nan_are_false() {
-        assert!(!Real::lt(f64::NAN, 1.0) && !Real::le(1.0, f64::NAN));
-        assert_eq!(Real::clamp(f64::NAN, -1.0, 1.0), -1.0);
     }
 }

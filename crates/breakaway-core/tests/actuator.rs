@@ -565,7 +565,7 @@ fn extract(extraction: &Extraction<f64>, limit_s: f64) -> Balance {
     let v = state.plant.velocity_m_per_s;
     let kinetic_j = 0.5 * extraction.part.mass_kg * v * v;
     let actuator_j = extraction.actuator.stored_energy_j(&state.actuator, state.plant.position_m);
-    let friction_j = balance.joint_work_j - extraction.joint.stored_energy_j(&state.plant);
+    let friction_j = balance.joint_work_j - state.plant.stored_energy_j(&extraction.joint);
     assert!(friction_j > 0.0 && balance.lost_j > -1e-12, "{friction_j}");
     balance.kept_j = kinetic_j + actuator_j;
     balance

@@ -25,9 +25,9 @@ fn dissipation_j(joint: Joint<f64>, fastest: f64) -> (f64, f64) {
             left = 1 + (500.0 * (1.0 + random(&mut seed))) as u32;
         }
         left -= 1;
-        let before = joint.stored_energy_j(&state);
+        let before = state.stored_energy_j(&joint);
         let work = impose_motion(&joint, &mut state, v, h) * v * h;
-        let dissipated = work - (joint.stored_energy_j(&state) - before);
+        let dissipated = work - (state.stored_energy_j(&joint) - before);
         (least, sum) = (f64::min(least, dissipated), sum + dissipated);
     }
     (least, sum)
@@ -83,7 +83,7 @@ fn work_is_motion_bristles_and_loss() {
             let gained = energy(rig.state.velocity_m_per_s) - energy(before.velocity_m_per_s);
             let work = (force_n - moved.joint_force_n) * h * v_m;
             assert!((gained - work).abs() < 1e-16, "{name}: {gained:e} {work:e}");
-            let stored = joint.stored_energy_j(&rig.state) - joint.stored_energy_j(&before);
+            let stored = rig.state.stored_energy_j(&joint) - before.stored_energy_j(&joint);
             lost += moved.joint_force_n * h * v_m - stored;
             least = f64::min(least, lost);
         }

@@ -3,7 +3,7 @@
 mod support;
 
 use breakaway_core::Maybe;
-use breakaway_core::joint::{Joint, TwoRegion};
+use breakaway_core::joint::{Joint, Law, TwoRegion};
 use breakaway_core::plant::Integrator::{LinearlyImplicitMidpoint, Rk4};
 use breakaway_core::test_models::paper_joint;
 use support::Rig;
@@ -47,7 +47,7 @@ fn the_force_that_breaks_the_joint_falls_with_the_distance() {
 fn before_the_seat_the_joint_is_fully_engaged() {
     let law = paper_joint();
     for x in [-1e-9, -0.01, -1.0] {
-        assert_eq!((law.stiction(x), law.coulomb(x)), (450.0, 360.0));
+        assert_eq!((law.breakaway_force(x), law.coulomb(x)), (450.0, 360.0));
     }
     let error = breakaway_force(Joint::Lugre(law), -0.02, 100.0) / 450.0 - 1.0;
     assert!(error.abs() < 0.01, "{error}");

@@ -108,7 +108,7 @@ fn lugre_drifts_under_vibration_below_breakaway() {
     let before = rig.state.position_m;
     pulse(&mut rig, peak_n, pulses);
     let drift = (rig.state.position_m - before) / f64::from(pulses);
-    let g = paper_joint().stiction(0.5 * (before + rig.state.position_m));
+    let g = paper_joint().breakaway_force(0.5 * (before + rig.state.position_m));
     let slow = -g / 3.6e7 * (1.0 - (peak_n / g).powi(2)).ln();
     // Found: 12.5 um with every pulse, as far as the bristles stretch before they break.
     assert!((drift / slow - 1.0).abs() < 0.1, "{drift:e} m, by slow pulses {slow:e} m");

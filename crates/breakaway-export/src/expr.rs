@@ -136,7 +136,7 @@ impl Recorder {
     ///
     /// # Example
     /// ```
-    /// use breakaway_core::test_models::paper_joint;
+    /// use breakaway_core::{joint::Law, test_models::paper_joint};
     /// let graph = breakaway_export::record(|recorder| {
     ///     let joint = paper_joint().map(&mut |name, _| recorder.field("joint", name));
     ///     let (x, v) = (recorder.input("x"), recorder.input("v"));

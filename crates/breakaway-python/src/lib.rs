@@ -3,12 +3,12 @@
 mod error;
 mod export;
 mod job;
+mod law;
 mod many;
 mod rig;
 
-use breakaway_batch::{FIGURES, Run, TRACE_COLUMNS, imposed_motion, run};
+use breakaway_batch::{FIGURES, Run, TRACE_COLUMNS, run};
 use breakaway_core::Outcome;
-use breakaway_core::joint::Joint;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -57,31 +57,6 @@ fn as_bytes<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyBytes
     })
 }
 
-/// Imposes velocities on a joint. Gives position, bristle and joint force as bytes of f64.
-#[pyfunction]
-fn impose<'py>(
-    py: Python<'py>,
-    joint: &Bound<'py, PyAny>,
-    start_m: f64,
-    period_s: f64,
-    velocities_m_per_s: Vec<f64>,
-) -> PyResult<[Bound<'py, PyBytes>; 3]> {
-    let joint: Joint<f64> = pythonize::depythonize(joint).map_err(error::unreadable)?;
-    let motion = py.detach(|| imposed_motion(&joint, start_m, period_s, &velocities_m_per_s));
-    Ok([
-        as_bytes(py, &motion.position_m)?,
-        as_bytes(py, &motion.bristle_m)?,
-        as_bytes(py, &motion.joint_force_n)?,
-    ])
-}
-
-/// F_s(x) in N, equation (5).
-#[pyfunction]
-fn breakaway_force(joint: &Bound<'_, PyAny>, position_m: f64) -> PyResult<f64> {
-    let joint: Joint<f64> = pythonize::depythonize(joint).map_err(error::unreadable)?;
-    Ok(joint.breakaway_force(position_m))
-}
-
 /// The compiled core of breakaway.
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -96,6 +71,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(many::fractions, module)?)?;
     module.add_function(wrap_pyfunction!(export::export_code, module)?)?;
     module.add_function(wrap_pyfunction!(export::export_reference, module)?)?;
-    module.add_function(wrap_pyfunction!(impose, module)?)?;
-    module.add_function(wrap_pyfunction!(breakaway_force, module)?)
+    module.add_function(wrap_pyfunction!(law::impose, module)?)?;
+    module.add_function(wrap_pyfunction!(law::breakaway_force, module)?)?;
+    module.add_function(wrap_pyfunction!(law::steady_friction, module)?)?;
+    module.add_function(wrap_pyfunction!(law::friction_curve, module)?)?;
+    module.add_function(wrap_pyfunction!(law::law_form, module)?)
 }

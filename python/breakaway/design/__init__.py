@@ -15,7 +15,7 @@ from breakaway.design.margins import Margins, margins
 from breakaway.design.pole_placement import GainSet, PidGains, pole_placement
 from breakaway.design.regimes import SampledLoop, sampled_loops, sampled_pid
 from breakaway.design.stability import LoopStability, Stability, stability
-from breakaway.design.stribeck import steepest_fall_velocity, stribeck_slope
+from breakaway.model.friction.curve import steepest_fall_velocity, stribeck_slope
 
 __all__ = [
     "Cycles",

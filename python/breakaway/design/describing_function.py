@@ -1,4 +1,4 @@
-"""Friction under a speed that oscillates about a mean: its force, harmonic by harmonic."""
+"""A force under an input that oscillates about a mean, harmonic by harmonic."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.design.pole_placement import check_positive
-from breakaway.design.stribeck import FrictionLaw, StribeckLaw, TwoWay, bristle_damping, bristles
 from breakaway.errors import ScenarioError
 
 Array = NDArray[np.float64]
@@ -94,83 +93,3 @@ def harmonic(values: Array, order: int) -> ComplexArray:
     turn = np.exp(-1j * order * midpoints(values.shape[-1]))
     amplitude: ComplexArray = np.asarray(2.0 * np.mean(values * turn, axis=-1))
     return amplitude
-
-
-def friction_over_period(
-    joint: FrictionLaw,
-    velocity_m_per_s: Array,
-    w: Array,
-    *,
-    residual_n: float,
-    position_m: Array,
-) -> Array:
-    """Friction force in N over a period of a speed that repeats, at the same points.
-
-    Without bristles ``R = g(v) sgn v + sigma_2 v``. With bristles the steady periodic solution of
-    equation (2): over a point's share of the period its coefficients are held, so that the
-    deflection follows ``z <- z E + q`` exactly, and what repeats is the fixed point of the whole
-    period's map, which is linear in z.
-
-    Parameters
-    ----------
-    joint : AnyJoint
-        A law of friction; bristles are LuGre's.
-    velocity_m_per_s : numpy.ndarray
-        v at `midpoints`, along the last axis.
-    w : numpy.ndarray
-        Frequencies in rad/s, of the other axes.
-    residual_n : float
-        Friction left at the end of the guide, in N.
-    position_m : numpy.ndarray
-        x, of the other axes: it stands still over a period.
-
-    Examples
-    --------
-    >>> import breakaway as bk
-    >>> joint = bk.load_scenario("paper_as_computed").joint
-    >>> steady = friction_over_period(
-    ...     joint, np.full(64, 0.5), np.array(1e3), residual_n=9.81, position_m=np.array(0.0))
-    >>> bool(np.allclose(steady, 360.0))
-    True
-
-    """
-    v = velocity_m_per_s
-    share = (1.0 - position_m / joint.engagement_length_m)[..., None]
-    level = residual_n + (joint.coulomb_n - residual_n) * share
-    viscous = 0.0
-    if isinstance(joint, StribeckLaw):
-        viscous = joint.viscous_n_s_per_m
-        drop = (joint.stiction_n - joint.coulomb_n) * share
-        level = level + drop * np.exp(-np.square(v / joint.stribeck_velocity_m_per_s))
-    if isinstance(joint, TwoWay) and joint.backward_ratio is not None:
-        level = level * np.where(v < 0.0, joint.backward_ratio, 1.0)
-    elastic = bristles(joint)
-    if elastic is None:
-        return np.asarray(level * np.sign(v) + viscous * v, dtype=np.float64)
-    k_e, c = elastic.stiffness_n_per_m, bristle_damping(elastic, v)
-    rate = k_e * np.abs(v) / level
-    z, rate_of_z = _bristle(v, rate, 2.0 * pi / v.shape[-1] / w)
-    force: Array = k_e * z + c * rate_of_z + viscous * v
-    return force
-
-
-def _bristle(v: Array, rate: Array, step_s: Array) -> tuple[Array, Array]:
-    """Give z and dz/dt of ``dz/dt = v - rate z``, means over each step of the periodic solution."""
-    turns = rate * step_s[..., None]
-    kept = np.exp(-turns)
-    small = turns < 1e-8
-    safe = np.where(small, 1.0, turns)
-    share = np.where(small, 1.0, -np.expm1(-safe) / safe)  # (1 - e^-turns) / turns
-    gained = v * step_s[..., None] * share
-    product, total = np.ones(step_s.shape), np.zeros(step_s.shape)
-    for k in range(v.shape[-1]):
-        product, total = product * kept[..., k], total * kept[..., k] + gained[..., k]
-    at = total / np.maximum(1.0 - product, np.finfo(np.float64).tiny)
-    starts = np.empty(v.shape)
-    for k in range(v.shape[-1]):
-        starts[..., k] = at
-        at = at * kept[..., k] + gained[..., k]
-    # the mean of dz/dt over a step is the step's rise; the mean of z follows from the equation
-    rise = (np.roll(starts, -1, axis=-1) - starts) / step_s[..., None]
-    z = np.where(small, starts, (v - rise) / np.where(small, 1.0, rate))
-    return z, rise

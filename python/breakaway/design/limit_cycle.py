@@ -8,16 +8,13 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from breakaway.design.describing_function import (
-    POINTS,
-    friction_over_period,
-    harmonic,
-    midpoints,
-)
+from breakaway.design.describing_function import POINTS, harmonic, midpoints
 from breakaway.design.loop import SampledPid
-from breakaway.design.pole_placement import check_positive, residual_n
-from breakaway.design.stribeck import FrictionLaw, SlipElements, StribeckLaw
+from breakaway.design.pole_placement import check_positive, with_residual
 from breakaway.errors import ScenarioError
+from breakaway.model.friction.curve import has_elements, steepest_change_velocity
+from breakaway.model.friction.periodic import friction_over_period
+from breakaway.model.scenario.joint import AnyJoint
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -53,7 +50,7 @@ class LimitCycle:
 
 def limit_cycles(
     pid: SampledPid,
-    joint: FrictionLaw,
+    joint: AnyJoint,
     mass_kg: float,
     speed_m_per_s: float,
     *,
@@ -133,7 +130,7 @@ def limit_cycles(
     return tuple(found)
 
 
-def oscillator_of(pid: SampledPid, joint: FrictionLaw, mass_kg: float) -> Oscillator | None:
+def oscillator_of(pid: SampledPid, joint: AnyJoint, mass_kg: float) -> Oscillator | None:
     """Give the loop as an oscillator, or None where nothing can keep it oscillating.
 
     Parameters
@@ -162,7 +159,7 @@ def oscillator_of(pid: SampledPid, joint: FrictionLaw, mass_kg: float) -> Oscill
 
     """
     check_positive(mass_kg=mass_kg)
-    if not isinstance(joint, StribeckLaw) or isinstance(joint, SlipElements):
+    if steepest_change_velocity(joint) is None or has_elements(joint):
         return None
     w = np.geomspace(1e-6, 0.98, 4000) * pi / pid.period_s
     impedance = _impedance(pid, mass_kg, w)
@@ -170,9 +167,8 @@ def oscillator_of(pid: SampledPid, joint: FrictionLaw, mass_kg: float) -> Oscill
     if not rising.size:
         return None
     least_damped = rising[np.argmin(impedance.real[rising])]
-    return Oscillator(
-        pid, joint, mass_kg, residual_n(joint, mass_kg), float(w[least_damped] / (2.0 * pi))
-    )
+    free_hz = float(w[least_damped] / (2.0 * pi))
+    return Oscillator(pid, with_residual(joint, mass_kg), mass_kg, free_hz)
 
 
 @dataclass(frozen=True)
@@ -180,18 +176,16 @@ class Oscillator:
     """A mass under a PID, and the friction that may drive it."""
 
     pid: SampledPid
-    joint: FrictionLaw
+    joint: AnyJoint
+    """The joint, its residual force explicit."""
     mass_kg: float
-    residual_n: float
     free_hz: float
     """Frequency at which mass and controller balance without friction, in Hz."""
 
     def balance(self, amplitude: Array, w: Array, speed: Array, position: Array) -> ComplexArray:
         """1/L + N in N s/m, whose real part damps and whose imaginary part sets the frequency."""
         v = speed[..., None] + amplitude[..., None] * np.cos(midpoints(POINTS))
-        force = friction_over_period(
-            self.joint, v, w, residual_n=self.residual_n, position_m=position
-        )
+        force = friction_over_period(self.joint, v, w, position_m=position)
         total: ComplexArray = _impedance(self.pid, self.mass_kg, w) + harmonic(force, 1) / amplitude
         return total
 
@@ -254,9 +248,7 @@ class Oscillator:
         def residual(unknown: Array) -> Array:
             w, parts = waves(unknown)
             v = speed + np.real(parts @ np.exp(1j * theta))
-            force = friction_over_period(
-                self.joint, v, np.asarray(w), residual_n=self.residual_n, position_m=position
-            )
+            force = friction_over_period(self.joint, v, np.asarray(w), position_m=position)
             forces = np.array([complex(harmonic(force, int(order))) for order in orders])
             missing = _impedance(self.pid, self.mass_kg, np.asarray(orders * w)) * parts + forces
             missing = missing / (self.mass_kg * w * scale)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import nan, pi
+from math import nan, pi, sqrt
 from typing import Literal
 
 import numpy as np
@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from breakaway.base.equality import ByValue
 from breakaway.design.limit_cycle import Oscillator, oscillator_of
 from breakaway.design.loop import SampledPid
-from breakaway.design.stribeck import FrictionLaw, StribeckLaw
 from breakaway.errors import ScenarioError
+from breakaway.model.friction.curve import steepest_change_velocity
+from breakaway.model.scenario.joint import AnyJoint
 
 Array = NDArray[np.float64]
 Stations = tuple[Array, Array, Array]
@@ -37,7 +38,8 @@ GRID = np.concatenate(
 )
 """Amplitudes over mean speed at which growth is computed: close where the speed turns back."""
 FLAT = 2.5
-"""Speed over v_s above which friction no longer changes with speed, exp(-6) or so."""
+"""Speed over v_s above which friction no longer changes with speed, exp(-6) or so; v_s is sqrt(2)
+times the speed of the steepest change."""
 
 Verdict = Literal["agree: oscillation", "agree: none", "only predicted", "only simulated"]
 
@@ -104,7 +106,7 @@ class LimitCycleComparison(ByValue):
 
 def compare_limit_cycle(
     pid: SampledPid,
-    joint: FrictionLaw,
+    joint: AnyJoint,
     mass_kg: float,
     *,
     t_s: ArrayLike,
@@ -222,11 +224,11 @@ def measured_cycles(t_s: ArrayLike, velocity_m_per_s: ArrayLike, mean_m_per_s: A
     return Cycles(*columns)
 
 
-def _stations(joint: FrictionLaw, t: Array, position: Array, speed: Array) -> Stations:
+def _stations(joint: AnyJoint, t: Array, position: Array, speed: Array) -> Stations:
     """Times, speeds and positions: few, and most of them where friction changes with speed."""
     if t.size < 2:
         return t, speed, position
-    v_s = joint.stribeck_velocity_m_per_s if isinstance(joint, StribeckLaw) else np.inf
+    v_s = sqrt(2.0) * (steepest_change_velocity(joint) or np.inf)
     change = np.abs(np.diff(np.minimum(speed / v_s, FLAT)))
     share = np.diff(t) / (t[-1] - t[0]) + 4.0 * change / max(float(np.sum(change)), 1e-300)
     along = np.concatenate([[0.0], np.cumsum(share)])

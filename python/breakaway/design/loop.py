@@ -9,16 +9,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from breakaway.design.pole_placement import PidGains, check_positive
-from breakaway.design.stribeck import (
-    FrictionLaw,
-    SlipElements,
-    StribeckLaw,
-    bristle_damping,
-    bristles,
-    friction_level,
-    stribeck_slope,
-)
 from breakaway.errors import ScenarioError
+from breakaway.model.friction.curve import has_bristles, steady_friction, stribeck_slope
+from breakaway.model.scenario.joint import AnyJoint
 
 if TYPE_CHECKING:
     import control
@@ -71,7 +64,7 @@ class SampledPid:
             )
 
 
-def stuck_plant(joint: FrictionLaw, mass_kg: float) -> control.StateSpace:
+def stuck_plant(joint: AnyJoint, mass_kg: float) -> control.StateSpace:
     """Give the part on its bristles, from force to position and velocity.
 
     ``m x'' + (c + sigma_2) x' + k_e x = F``: equation (1) at rest, where the bristle moves with
@@ -107,19 +100,18 @@ def stuck_plant(joint: FrictionLaw, mass_kg: float) -> control.StateSpace:
 
     """
     check_positive(mass_kg=mass_kg)
-    elastic = bristles(joint)
-    if elastic is None:
+    if not has_bristles(joint):
         raise ScenarioError(
             f"joint.law: {joint.law!r} has no stiffness while it is stuck, so there is no stuck "
             "loop; look at the sliding one"
         )
-    viscous = joint.viscous_n_s_per_m if isinstance(joint, StribeckLaw) else 0.0
-    damping = elastic.damping_n_s_per_m + viscous
-    return _plant([[0.0, 1.0], [-elastic.stiffness_n_per_m / mass_kg, -damping / mass_kg]], mass_kg)
+    at_rest = steady_friction(joint, 0.0)
+    damping = float(at_rest.damping_n_s_per_m + at_rest.viscous_n_s_per_m)
+    return _plant([[0.0, 1.0], [-joint.stiffness_n_per_m / mass_kg, -damping / mass_kg]], mass_kg)
 
 
 def sliding_plant(
-    joint: FrictionLaw, mass_kg: float, velocity_m_per_s: float | None = None
+    joint: AnyJoint, mass_kg: float, velocity_m_per_s: float | None = None
 ) -> control.StateSpace:
     """Give the sliding part, from force to position and velocity, around a steady speed.
 
@@ -165,12 +157,12 @@ def sliding_plant(
     if velocity_m_per_s is None:
         return _plant([[0.0, 1.0], [0.0, 0.0]], m)
     check_positive(velocity_m_per_s=velocity_m_per_s)
-    if not isinstance(joint, StribeckLaw):
-        return _plant([[0.0, 1.0], [0.0, 0.0]], m)
-    v, viscous = velocity_m_per_s, joint.viscous_n_s_per_m
-    slope = stribeck_slope(joint, v) - viscous
-    rate, lead = _lag(joint, v)
-    if rate is None:
+    friction = steady_friction(joint, velocity_m_per_s)
+    viscous, rate, lead = (
+        float(one) for one in (friction.viscous_n_s_per_m, friction.rate_per_s, friction.lead)
+    )
+    slope = stribeck_slope(joint, velocity_m_per_s) - viscous
+    if rate == inf:
         return _plant([[0.0, 1.0], [0.0, -(slope + viscous) / m]], m)
     # y is the bristle's change times k_e: y' = rate (g' v - y), R = y + c/k_e y' + sigma_2 v
     return _plant(
@@ -222,18 +214,6 @@ def open_loop(pid: SampledPid, plant: control.StateSpace) -> control.StateSpace:
     sampled = control.c2d(plant, pid.period_s, method="zoh")
     loop = control.series(sampled, _controller(pid))
     return control.series(loop, _delay(pid)) if pid.delay_samples else loop
-
-
-def _lag(joint: StribeckLaw, velocity: float) -> tuple[float | None, float]:
-    """Rate in 1/s at which friction follows its curve, None at once; and c / k_e times it."""
-    level = float(friction_level(joint, velocity, residual_n=0.0))
-    if isinstance(joint, SlipElements):
-        return joint.attraction_n_per_s / level, 0.0
-    elastic = bristles(joint)
-    if elastic is None:
-        return None, 0.0
-    k_e, c = elastic.stiffness_n_per_m, float(bristle_damping(elastic, velocity))
-    return k_e * velocity / level, c * velocity / level
 
 
 def _plant(dynamics: list[list[float]], mass_kg: float) -> control.StateSpace:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 
-from breakaway.design.stribeck import FrictionLaw, bristles
 from breakaway.errors import ScenarioError
+from breakaway.model.friction.curve import has_bristles
+from breakaway.model.scenario.joint import AnyJoint
 
 GRAVITY_M_PER_S2 = 9.81
 """Standard gravity, as rounded by the paper's own gains."""
@@ -38,13 +39,18 @@ class GainSet:
     """omega, from the settling time."""
 
 
-def residual_n(joint: FrictionLaw, mass_kg: float) -> float:
+def residual_n(joint: AnyJoint, mass_kg: float) -> float:
     """Friction left at the end of the guide, in N: the joint's own, or the weight m g."""
     return mass_kg * GRAVITY_M_PER_S2 if joint.residual_n is None else joint.residual_n
 
 
+def with_residual(joint: AnyJoint, mass_kg: float) -> AnyJoint:
+    """Give the joint with its residual force as a number."""
+    return joint.model_copy(update={"residual_n": residual_n(joint, mass_kg)})
+
+
 def pole_placement(
-    joint: FrictionLaw,
+    joint: AnyJoint,
     *,
     mass_kg: float,
     settling_time_s: float,
@@ -112,8 +118,7 @@ def pole_placement(
     )
     if not 0.0 <= static_share <= 1.0:
         raise ScenarioError(f"static_share: {static_share!r} is not within 0 to 1")
-    elastic = bristles(joint)
-    if elastic is None:
+    if not has_bristles(joint):
         raise ScenarioError(
             f"joint.law: {joint.law!r} has no stiffness to place poles by; give gains as numbers"
         )
@@ -133,7 +138,7 @@ def pole_placement(
     second_order = 2.0 * damping_ratio * w
     k_wanted, c_wanted, ki = (w * w + a * second_order) * m, (second_order + a) * m, a * w * w * m
     static = PidGains(
-        kp=k_wanted - elastic.stiffness_n_per_m, ki=ki, kd=c_wanted - elastic.damping_n_s_per_m
+        kp=k_wanted - joint.stiffness_n_per_m, ki=ki, kd=c_wanted - joint.damping_n_s_per_m
     )
     dynamic = PidGains(kp=k_wanted / m2 - 1.0, ki=ki / m2, kd=c_wanted / m2)
     total = _weighted(static_share, static, dynamic)

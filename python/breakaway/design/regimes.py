@@ -9,8 +9,9 @@ from breakaway.design.loop import SampledPid, open_loop, sliding_plant, stuck_pl
 from breakaway.design.margins import Margins, margins
 from breakaway.design.pole_placement import PidGains
 from breakaway.design.stability import LoopStability
-from breakaway.design.stribeck import FrictionLaw, bristles, steepest_fall_velocity, stribeck_slope
+from breakaway.model.friction.curve import has_bristles, steepest_fall_velocity, stribeck_slope
 from breakaway.model.scenario.controller import PidSettings
+from breakaway.model.scenario.joint import AnyJoint
 from breakaway.model.scenario.run import Timing
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def sampled_pid(gains: PidGains, settings: PidSettings, timing: Timing) -> Sampl
 
 def sampled_loops(
     pid: SampledPid,
-    joint: FrictionLaw,
+    joint: AnyJoint,
     mass_kg: float,
     *,
     velocity_m_per_s: float | None = None,
@@ -123,7 +124,7 @@ def sampled_loops(
 
     """
     loops = []
-    if bristles(joint):
+    if has_bristles(joint):
         loops.append(_loop("stuck", pid, stuck_plant(joint, mass_kg)))
     loops.append(_loop("sliding", pid, sliding_plant(joint, mass_kg)))
     given = velocity_m_per_s is not None

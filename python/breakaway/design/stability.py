@@ -7,8 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from breakaway.design.pole_placement import PidGains, check_positive
-from breakaway.design.stribeck import FrictionLaw, StribeckLaw, bristles, stribeck_slope
 from breakaway.errors import ScenarioError
+from breakaway.model.friction.curve import (
+    has_bristles,
+    steepest_change_velocity,
+    stribeck_slope,
+)
+from breakaway.model.scenario.joint import AnyJoint
 
 
 @dataclass(frozen=True)
@@ -35,7 +40,7 @@ class Stability:
     """What the falling friction curve does to the sliding loop at low speed."""
 
 
-def stability(gains: PidGains, joint: FrictionLaw, mass_kg: float) -> Stability:
+def stability(gains: PidGains, joint: AnyJoint, mass_kg: float) -> Stability:
     """Judge a continuous PID loop around a joint by Routh and Hurwitz.
 
     The loop ``m x'' + (c + kd) x' + (k_e + kp) x + ki integral(x) = 0`` (stuck; sliding without c
@@ -68,9 +73,8 @@ def stability(gains: PidGains, joint: FrictionLaw, mass_kg: float) -> Stability:
     """
     check_positive(mass_kg=mass_kg)
     stuck = None
-    elastic = bristles(joint)
-    if elastic is not None:
-        k_e, c = elastic.stiffness_n_per_m, elastic.damping_n_s_per_m
+    if has_bristles(joint):
+        k_e, c = joint.stiffness_n_per_m, joint.damping_n_s_per_m
         stuck = _routh_hurwitz(c + gains.kd, k_e + gains.kp, gains.ki, mass_kg)
     return Stability(
         stuck=stuck,
@@ -100,11 +104,11 @@ def _routh_hurwitz(damping: float, stiffness: float, ki: float, mass_kg: float) 
     return LoopStability(stable, poles, reason)
 
 
-def _stribeck_verdict(gains: PidGains, joint: FrictionLaw, mass_kg: float) -> str:
-    """Routh's condition with the steepest fall of g(v) + sigma_2 v, at v = v_s / sqrt(2)."""
-    if not isinstance(joint, StribeckLaw):
+def _stribeck_verdict(gains: PidGains, joint: AnyJoint, mass_kg: float) -> str:
+    """Routh's condition with the steepest fall of the friction curve, viscous friction included."""
+    at = steepest_change_velocity(joint)
+    if at is None:
         return "this law has no falling friction curve"
-    at = joint.stribeck_velocity_m_per_s / np.sqrt(2.0)
     slope = -stribeck_slope(joint, at)
     kd = gains.kd
     where = f"steepest fall {slope:.4g} N s/m at {at:.3g} m/s"

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, TypeVar
 
-from breakaway.design.pole_placement import pole_placement, residual_n
+import numpy as np
+
+from breakaway.design.pole_placement import pole_placement, with_residual
 from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import ForceActuator
 from breakaway.model.scenario.controller import (
@@ -16,7 +18,8 @@ from breakaway.model.scenario.controller import (
     PolePlacement,
     TwoStep,
 )
-from breakaway.model.scenario.joint import AnyJoint, CoulombStiction, ElastoPlastic, Gms
+from breakaway.model.scenario.core_joint import leave_out_zero, nested_joint
+from breakaway.model.scenario.joint import AnyJoint
 from breakaway.model.scenario.model import Model
 from breakaway.model.scenario.scenario import Scenario
 
@@ -56,9 +59,6 @@ def resolve(scenario: Scenario) -> Scenario:
     """
     check_scenario(scenario)
     joint, limits = scenario.joint, scenario.limits
-    explicit_joint = joint.model_copy(
-        update={"residual_n": residual_n(joint, scenario.part.mass_kg)}
-    )
     explicit_limits = limits.model_copy(
         update={
             "diverged_error_m": joint.engagement_length_m / 2
@@ -77,7 +77,7 @@ def resolve(scenario: Scenario) -> Scenario:
     )
     return scenario.model_copy(
         update={
-            "joint": explicit_joint,
+            "joint": with_residual(joint, scenario.part.mass_kg),
             "limits": explicit_limits,
             "controller": with_gains(scenario),
         }
@@ -92,9 +92,8 @@ def _contact_force_n(scenario: Scenario) -> float:
 
 def _breakaway_travel_m(joint: AnyJoint) -> float:
     """Twice what bristles can stretch; a rigid joint is loose once it has moved at all."""
-    if isinstance(joint, CoulombStiction):
-        return 1e-6 * joint.engagement_length_m
-    return 2 * joint.stiction_n / joint.stiffness_n_per_m
+    stretch_m = 2 * joint.stiction_n / joint.stiffness_n_per_m
+    return stretch_m if np.any(stretch_m) else 1e-6 * joint.engagement_length_m
 
 
 def with_gains(scenario: Scenario) -> AnyController:
@@ -134,13 +133,13 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
     """Values of a resolved scenario under the names of the core."""
     values = resolved.model_dump(warnings=False)  # a batch puts columns where numbers are
     timing, limits = values["timing"], values["limits"]
-    joint = _core_joint(resolved.joint, values["joint"])
+    joint = nested_joint(resolved.joint, values["joint"])
     infinite = float("inf")
     controller = values["controller"]
     _name_as_the_core(values)
     for pid in _pid_tables(controller):
         del pid["gains"]["kind"]
-        _leave_out_zero(pid, "derivative_filter_s")
+        leave_out_zero(pid, "derivative_filter_s")
     disturbance = values["disturbance"]
     law = {"kind": disturbance.pop("law")}
     if "bandwidth_hz" in disturbance:
@@ -177,39 +176,6 @@ def _name_as_the_core(values: dict[str, Any]) -> None:
     watch = values["watch"]
     if watch and watch["frozen_max_s"] is None:
         watch["frozen_max_s"] = float("inf")
-
-
-def core_joint(joint: AnyJoint) -> dict[str, Any]:
-    """Give a resolved joint as the core takes it.
-
-    Examples
-    --------
-    >>> import breakaway as bk
-    >>> core_joint(bk.resolve(bk.load_scenario("paper_as_computed")).joint)["law"]
-    'lugre'
-
-    """
-    return _core_joint(joint, joint.model_dump())
-
-
-def _core_joint(joint: AnyJoint, values: dict[str, Any]) -> dict[str, Any]:
-    """Nest what the core nests: the laws that build on LuGre hold its numbers in a table."""
-    _leave_out_zero(values, "viscous_n_s_per_m")
-    if isinstance(joint, ElastoPlastic):
-        own = {"elastic_share": values.pop("elastic_share")}
-    elif isinstance(joint, Gms):
-        del values["stiffness_shares"], values["level_shares"]
-        own = {name: values.pop(name) for name in ("elements", "attraction_n_per_s")}
-        own["stiffness_shares"], own["level_shares"] = joint.all_shares()
-    else:
-        return values
-    return {"law": values.pop("law"), "friction": values, **own}
-
-
-def _leave_out_zero(values: dict[str, Any], name: str) -> None:
-    """Say that there is none, where it is a number and zero: the core is faster without."""
-    if isinstance(values.get(name), float) and values[name] == 0.0:
-        values[name] = None
 
 
 def _pid_tables(controller: dict[str, Any]) -> Iterator[dict[str, Any]]:

@@ -1,7 +1,10 @@
 //! Rigid friction: stuck, or sliding.
 
+use super::elements::ElementState;
+use super::engagement::engaged_level;
+use super::frozen::{At, Frozen, JointState, Rigid};
+use super::law::Law;
 use super::lugre::stribeck_level;
-use super::{At, Rigid, engaged_level};
 use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
@@ -56,26 +59,58 @@ impl<R: Real> CoulombStiction<R> {
         }
     }
 
-    /// F_s(x) in N against forward motion: equation (5).
+    /// g(v, x) in N against forward motion, multiplied by `factor`.
     #[inline(always)]
-    pub fn stiction(&self, x: R) -> R {
+    fn slipping_level(&self, x: R, v: R, factor: R) -> R {
+        let levels = [self.stiction_n, self.coulomb_n];
+        let (end, length) = (self.residual_n, self.engagement_length_m);
+        stribeck_level(levels, end, length, self.stribeck_velocity_m_per_s, x, v, factor)
+    }
+}
+
+impl<R: Real> Law<R> for CoulombStiction<R> {
+    #[inline(always)]
+    fn engagement_length_m(&self) -> R {
+        self.engagement_length_m
+    }
+
+    #[inline(always)]
+    fn stiffness_n_per_m(&self) -> R {
+        R::constant(f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn breakaway_force(&self, x: R) -> R {
         engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
+    }
+
+    #[inline(always)]
+    fn friction_level(&self, x: R, v: R, factor: R) -> R {
+        let level = self.slipping_level(x, v, factor);
+        match self.backward_ratio.get() {
+            Some(&ratio) => level * R::select(v.lt(R::zero()), ratio, R::one()),
+            None => level,
+        }
+    }
+
+    /// Nothing: there are no bristles.
+    #[inline(always)]
+    fn stored_energy_j(&self, _bristle_m: R, _elements: &ElementState<R>) -> R {
+        R::zero()
     }
 
     /// What holds the part, stuck or sliding.
     #[inline(always)]
-    pub(super) fn freeze(&self, sliding: R, at: &At<R>) -> Rigid<R> {
+    fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
         let (x, v, factor) = (at.position_m, at.velocity_m_per_s, at.level_factor);
         let (end, length) = (self.residual_n, self.engagement_length_m);
         let stuck = engaged_level(self.stiction_n, end, length, factor, x);
-        let levels = [self.stiction_n, self.coulomb_n];
-        let v_s = self.stribeck_velocity_m_per_s;
-        let slips = stribeck_level(levels, end, length, v_s, x, v, factor);
-        let level_n = R::select(sliding.is_set(), slips, stuck);
+        let slips = self.slipping_level(x, v, factor);
+        let level_n = R::select(state.sliding.is_set(), slips, stuck);
         let backward_level_n = match self.backward_ratio.get() {
             Some(&ratio) => level_n * ratio,
             None => level_n,
         };
-        Rigid { level_n, backward_level_n, viscous_n_s_per_m: self.viscous_n_s_per_m }
+        then.rigid(&Rigid { level_n, backward_level_n, viscous_n_s_per_m: self.viscous_n_s_per_m })
     }
 }

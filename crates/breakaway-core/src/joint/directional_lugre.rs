@@ -1,5 +1,8 @@
+//! Friction of a rig, by direction.
+
+use super::frozen::{At, Bristle, Frozen, JointState};
+use super::law::Law;
 use super::onset::slip_onset;
-use super::{At, Bristle, Frozen, JointState, Law};
 use crate::maybe::Maybe;
 use crate::real::Real;
 use core::f64::consts::LOG2_E;
@@ -124,19 +127,30 @@ impl<R: Real> DirectionalLugre<R> {
 }
 
 impl<R: Real> Law<R> for DirectionalLugre<R> {
+    /// It does not end.
     #[inline(always)]
-    fn settle(&self, state: JointState<R>, _x: R, _v: R, _level_factor: R) -> JointState<R> {
-        state
+    fn engagement_length_m(&self) -> R {
+        R::constant(f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn stiffness_n_per_m(&self) -> R {
+        self.stiffness_n_per_m
+    }
+
+    #[inline(always)]
+    fn breakaway_force(&self, x: R) -> R {
+        self.level(x, R::zero())
+    }
+
+    #[inline(always)]
+    fn friction_level(&self, x: R, v: R, factor: R) -> R {
+        self.level(x, v) * factor
     }
 
     #[inline(always)]
     fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
         let (x, v) = (at.position_m, at.velocity_m_per_s);
         then.bristle(&self.freeze(state, x, v, at.level_factor))
-    }
-
-    #[inline(always)]
-    fn engagement_length_m(&self) -> R {
-        R::constant(f64::INFINITY)
     }
 }

@@ -1,7 +1,9 @@
 //! Elasto-plastic friction with contact loss.
 
+use super::frozen::{At, Bristle, Frozen, JointState};
+use super::law::Law;
+use super::lugre::Lugre;
 use super::onset::slip_onset;
-use super::{At, Bristle, Lugre};
 use crate::name::Name;
 use crate::real::Real;
 
@@ -42,9 +44,9 @@ impl<R: Real> ElastoPlastic<R> {
     /// of its linear equation with the α of now, solved implicitly. With the α of now alone a step
     /// would be of first order.
     #[inline(always)]
-    pub(super) fn freeze(&self, z: R, at: &At<R>) -> Bristle<R> {
+    fn bristle(&self, z: R, at: &At<R>) -> Bristle<R> {
         let (v, k) = (at.velocity_m_per_s, at.ahead_s);
-        let bristle = self.yielding(self.friction.freeze(at), z, v);
+        let bristle = self.yielding(self.friction.bristle(at), z, v);
         let g = bristle.friction_level_n;
         let z_ahead = (g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g)).named("ahead_m");
         self.yielding(bristle, z_ahead, v)
@@ -55,5 +57,32 @@ impl<R: Real> ElastoPlastic<R> {
         let (k_e, g) = (bristle.stiffness_n_per_m, bristle.friction_level_n);
         let onset = slip_onset(self.elastic_share, z, v, k_e, g);
         Bristle { relaxation_n_per_m: onset * k_e, ..bristle }
+    }
+}
+
+impl<R: Real> Law<R> for ElastoPlastic<R> {
+    #[inline(always)]
+    fn engagement_length_m(&self) -> R {
+        self.friction.engagement_length_m
+    }
+
+    #[inline(always)]
+    fn stiffness_n_per_m(&self) -> R {
+        self.friction.stiffness_n_per_m
+    }
+
+    #[inline(always)]
+    fn breakaway_force(&self, x: R) -> R {
+        self.friction.breakaway_force(x)
+    }
+
+    #[inline(always)]
+    fn friction_level(&self, x: R, v: R, factor: R) -> R {
+        self.friction.friction_level(x, v, factor)
+    }
+
+    #[inline(always)]
+    fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
+        then.bristle(&self.bristle(state.bristle_m, at))
     }
 }

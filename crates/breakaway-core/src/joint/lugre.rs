@@ -2,7 +2,9 @@
 
 use core::f64::consts::LOG2_E;
 
-use super::{At, Bristle, engaged_level};
+use super::engagement::engaged_level;
+use super::frozen::{At, Bristle, Frozen, JointState};
+use super::law::Law;
 use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
@@ -91,28 +93,10 @@ impl<R: Real> Lugre<R> {
         }
     }
 
-    /// F_s(x) in N against forward motion: equation (5).
-    #[inline(always)]
-    pub fn stiction(&self, x: R) -> R {
-        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
-    }
-
     /// F_c(x) in N against forward motion: equation (6).
     #[inline(always)]
     pub fn coulomb(&self, x: R) -> R {
         engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, R::one(), x)
-    }
-
-    /// g(v, x) in N, multiplied by `factor`: equation (3).
-    #[inline(always)]
-    pub fn friction_level(&self, x: R, v: R, factor: R) -> R {
-        let factor = match self.backward_ratio.get() {
-            Some(&ratio) => factor * R::select(v.lt(R::zero()), ratio, R::one()),
-            None => factor,
-        };
-        let (end, length) = (self.residual_n, self.engagement_length_m);
-        let levels = [self.stiction_n, self.coulomb_n];
-        stribeck_level(levels, end, length, self.stribeck_velocity_m_per_s, x, v, factor)
     }
 
     /// c(v) in N s/m.
@@ -124,8 +108,9 @@ impl<R: Real> Lugre<R> {
         }
     }
 
+    /// The bristle with velocity and position frozen.
     #[inline(always)]
-    pub(super) fn freeze(&self, at: &At<R>) -> Bristle<R> {
+    pub(super) fn bristle(&self, at: &At<R>) -> Bristle<R> {
         let v = at.velocity_m_per_s;
         Bristle {
             stretch: R::one(),
@@ -136,6 +121,40 @@ impl<R: Real> Lugre<R> {
             damping_n_s_per_m: self.damping(v),
             viscous_n_s_per_m: self.viscous_n_s_per_m,
         }
+    }
+}
+
+impl<R: Real> Law<R> for Lugre<R> {
+    #[inline(always)]
+    fn engagement_length_m(&self) -> R {
+        self.engagement_length_m
+    }
+
+    #[inline(always)]
+    fn stiffness_n_per_m(&self) -> R {
+        self.stiffness_n_per_m
+    }
+
+    #[inline(always)]
+    fn breakaway_force(&self, x: R) -> R {
+        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
+    }
+
+    /// Equation (3).
+    #[inline(always)]
+    fn friction_level(&self, x: R, v: R, factor: R) -> R {
+        let factor = match self.backward_ratio.get() {
+            Some(&ratio) => factor * R::select(v.lt(R::zero()), ratio, R::one()),
+            None => factor,
+        };
+        let (end, length) = (self.residual_n, self.engagement_length_m);
+        let levels = [self.stiction_n, self.coulomb_n];
+        stribeck_level(levels, end, length, self.stribeck_velocity_m_per_s, x, v, factor)
+    }
+
+    #[inline(always)]
+    fn frozen<F: Frozen<R>>(&self, _state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
+        then.bristle(&self.bristle(at))
     }
 }
 

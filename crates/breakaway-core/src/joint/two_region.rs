@@ -1,6 +1,8 @@
 //! The two-region law that the paper designs its controller with.
 
-use super::{Bristle, JointState, engaged_level};
+use super::engagement::engaged_level;
+use super::frozen::{At, Bristle, Frozen, JointState};
+use super::law::Law;
 use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
@@ -48,36 +50,53 @@ impl<R: Real> TwoRegion<R> {
         }
     }
 
-    /// F_s(x) in N against forward motion: equation (5).
-    #[inline(always)]
-    pub fn stiction(&self, x: R) -> R {
-        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
-    }
-
     /// F_c(x) in N against forward motion: equation (6).
     #[inline(always)]
     pub fn coulomb(&self, x: R) -> R {
         engaged_level(self.coulomb_n, self.residual_n, self.engagement_length_m, R::one(), x)
     }
 
-    /// Breaks loose, catches, and while sliding holds the deflection that carries F_c(x).
+    /// A factor on the level, for a force in this direction.
     #[inline(always)]
-    pub(super) fn settle(
-        &self,
-        state: JointState<R>,
-        x: R,
-        v: R,
-        level_factor: R,
-    ) -> JointState<R> {
-        R::section("two regions: breaks loose at k_e |z| > F_s(x), catches when v turns");
-        let direction = state.bristle_m.sign().named("direction");
-        let level_factor = match self.backward_ratio.get() {
+    fn directed(&self, level_factor: R, direction: R) -> R {
+        match self.backward_ratio.get() {
             Some(&ratio) => level_factor * R::select(direction.lt(R::zero()), ratio, R::one()),
             None => level_factor,
-        };
+        }
+    }
+}
+
+impl<R: Real> Law<R> for TwoRegion<R> {
+    #[inline(always)]
+    fn engagement_length_m(&self) -> R {
+        self.engagement_length_m
+    }
+
+    #[inline(always)]
+    fn stiffness_n_per_m(&self) -> R {
+        self.stiffness_n_per_m
+    }
+
+    #[inline(always)]
+    fn breakaway_force(&self, x: R) -> R {
+        engaged_level(self.stiction_n, self.residual_n, self.engagement_length_m, R::one(), x)
+    }
+
+    /// F_c(x), at any speed.
+    #[inline(always)]
+    fn friction_level(&self, x: R, v: R, factor: R) -> R {
+        self.coulomb(x) * self.directed(factor, v)
+    }
+
+    /// Breaks loose, catches, and while sliding holds the deflection that carries F_c(x).
+    #[inline(always)]
+    fn settle(&self, state: JointState<R>, x: R, v: R, level_factor: R) -> JointState<R> {
+        R::section("two regions: breaks loose at k_e |z| > F_s(x), catches when v turns");
+        let direction = state.bristle_m.sign().named("direction");
+        let level_factor = self.directed(level_factor, direction);
         let elastic = (self.stiffness_n_per_m * state.bristle_m).abs().named("elastic_n");
         let slips_on = state.sliding.is_set() & R::zero().lt(v * direction);
-        let breaks = !state.sliding.is_set() & (self.stiction(x) * level_factor).lt(elastic);
+        let breaks = !state.sliding.is_set() & (self.breakaway_force(x) * level_factor).lt(elastic);
         let engaged = x.lt(self.engagement_length_m);
         let sliding = engaged & (slips_on | breaks);
         let slip_deflection = direction * self.coulomb(x) * level_factor / self.stiffness_n_per_m;
@@ -93,8 +112,8 @@ impl<R: Real> TwoRegion<R> {
     }
 
     #[inline(always)]
-    pub(super) fn freeze(&self, state: &JointState<R>) -> Bristle<R> {
-        Bristle {
+    fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, _at: &At<R>, then: F) -> F::Output {
+        then.bristle(&Bristle {
             stretch: R::one() - state.sliding,
             speed_m_per_s: R::zero(),
             relaxation_n_per_m: R::zero(),
@@ -102,6 +121,6 @@ impl<R: Real> TwoRegion<R> {
             stiffness_n_per_m: self.stiffness_n_per_m,
             damping_n_s_per_m: self.damping_n_s_per_m,
             viscous_n_s_per_m: Maybe::none(),
-        }
+        })
     }
 }

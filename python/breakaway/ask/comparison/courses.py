@@ -8,10 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from breakaway import _core
 from breakaway.ask.comparison.table import Trials, median_row, worst_row
+from breakaway.model.friction.curve import breakaway_force
 from breakaway.run.finished import Run
-from breakaway.run.resolution import core_joint
 from breakaway.run.trials import Trial
 from breakaway.show.plots.comparison import Course
 
@@ -135,7 +134,6 @@ def _columns(run: Run, rows: Rows) -> dict[str, Array]:
 
     A tool without a stack is the tip, and is not told twice.
     """
-    joint = core_joint(run.scenario.joint)
     x = run.trace["position_m"][rows]
     axis = [name for name in ("feed_m", "tool_m", "tip_m") if name in run.trace]
     if axis and np.array_equal(run.trace["tool_m"], run.trace["tip_m"]):
@@ -144,6 +142,6 @@ def _columns(run: Run, rows: Rows) -> dict[str, Array]:
         "t_s": run.trace["t_s"][rows],
         "position_m": x,
         "force_n": run.trace["applied_force_n"][rows],
-        "breakaway_n": np.array([_core.breakaway_force(joint, float(at)) for at in x]),
+        "breakaway_n": breakaway_force(run.scenario.joint, x),
         **{name: run.trace[name][rows] for name in axis},
     }

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from breakaway.ask.reproduction.figure_10 import CONTROL_COLORS, draw_figure_10
 from breakaway.ask.reproduction.runs import Runs
 from breakaway.ask.reproduction.survey import NAMES, DisturbanceRange
+from breakaway.model.friction.curve import breakaway_force, steady_force
+from breakaway.model.friction.imposed import impose_motion
 from breakaway.model.scenario.files import load_scenario
 from breakaway.model.scenario.joint import Lugre
 from breakaway.run.finished import Run
-from breakaway.run.imposed import impose_motion
 from breakaway.run.resolution import resolve
 from breakaway.show.plots.style import COLORS, house_figure, house_style
 
@@ -71,11 +72,9 @@ def stribeck_curve() -> ReproducedFigure:
     velocities = np.concatenate([-speeds[::-1], speeds])
     steady = np.array([_steady_friction(joint, v) for v in velocities])
     v = np.linspace(-0.5, 0.5, 801)
-    v_s, drop = joint.stribeck_velocity_m_per_s, joint.stiction_n - joint.coulomb_n
-    curve = np.sign(v) * (joint.coulomb_n + drop * np.exp(-((v / v_s) ** 2)))
     drawing = house_figure(height=2.9)
     axes = drawing.subplots()
-    axes.plot(v, curve, color=COLORS["ours"], label="equation (4)")
+    axes.plot(v, steady_force(joint, v), color=COLORS["ours"], label="equation (4)")
     axes.plot(
         velocities,
         steady,
@@ -87,14 +86,13 @@ def stribeck_curve() -> ReproducedFigure:
     )
     axes.set(xlabel="velocity (m/s)", ylabel="friction at the seat (N)")
     axes.legend(loc="lower right")
-    g = joint.coulomb_n + drop * np.exp(-((speeds / v_s) ** 2))
-    worst = float(np.max(np.abs(steady[speeds.size :] / g - 1.0)))
+    worst = float(np.max(np.abs(steady / steady_force(joint, velocities) - 1.0)[speeds.size :]))
     return ReproducedFigure(
         "figure_2b",
         "Figure 2b: the Stribeck curve.",
         "Friction falls from stiction to the Coulomb level over the Stribeck velocity of "
-        f"{v_s:g} m/s. The simulated bristle settles on the curve to a relative "
-        f"{worst:.1e}; the paper draws the same shape without numbers.",
+        f"{joint.stribeck_velocity_m_per_s:g} m/s. The simulated bristle settles on the curve to a "
+        f"relative {worst:.1e}; the paper draws the same shape without numbers.",
         drawing,
         {"largest_relative_difference": worst},
     )
@@ -117,8 +115,7 @@ def loss_of_contact() -> ReproducedFigure:
     x = np.array([0.0, joint.engagement_length_m])
     end = joint.residual_n or 0.0
     starts = np.linspace(0.0, 0.099, 12)
-    measured = np.array([_breakaway_force(joint, start) for start in starts])
-    expected = joint.stiction_n + (end - joint.stiction_n) * starts / joint.engagement_length_m
+    measured = np.array([_measured_breakaway_force(joint, start) for start in starts])
     drawing = house_figure(height=2.7)
     axes = drawing.subplots()
     axes.plot(
@@ -138,7 +135,7 @@ def loss_of_contact() -> ReproducedFigure:
     )
     axes.set(xlabel="position (mm)", ylabel="force (N)", xlim=(-2, 102), ylim=(0, None))
     axes.legend()
-    worst = float(np.max(np.abs(measured / expected - 1.0)))
+    worst = float(np.max(np.abs(measured / breakaway_force(joint, starts) - 1.0)))
     return ReproducedFigure(
         "figure_4",
         "Figure 4: loss of contact.",
@@ -149,7 +146,7 @@ def loss_of_contact() -> ReproducedFigure:
     )
 
 
-def _breakaway_force(joint: Lugre, start_m: float) -> float:
+def _measured_breakaway_force(joint: Lugre, start_m: float) -> float:
     """Peak joint force while pulling at 10 um/s from a position."""
     motion = impose_motion(joint, np.full(6000, 1e-5), period_s=2e-3, start_m=start_m)
     return float(motion.joint_force_n.max())

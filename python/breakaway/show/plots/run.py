@@ -9,11 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from breakaway import _core
 from breakaway.base import text
 from breakaway.errors import ScenarioError
+from breakaway.model.friction.curve import breakaway_force
 from breakaway.run.finished import Outcome, Run
-from breakaway.run.resolution import core_joint
 from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
 Array = NDArray[np.float64]
@@ -103,8 +102,7 @@ def _draw_error(axes: Axes, columns: Mapping[str, Array], per_s: float) -> None:
 def _draw_forces(axes: Axes, run: Run, columns: Mapping[str, Array], per_s: float) -> None:
     applied, joint = columns["applied_force_n"], columns["joint_force_n"]
     t, x = _thinned(columns["t_s"], columns["position_m"])
-    law = core_joint(run.scenario.joint)
-    loose = np.array([_core.breakaway_force(law, float(at)) for at in x])  # equation (5)
+    loose = breakaway_force(run.scenario.joint, x)  # equation (5)
     factor, unit = scaled([*_range(applied), *_range(joint), *_range(loose)], "N")
     for label, values, color in (("applied", applied, "ours"), ("joint", joint, "alternative")):
         at, shown = _thinned(columns["t_s"], values)

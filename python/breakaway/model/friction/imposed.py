@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from breakaway import _core
 from breakaway.base.equality import ByValue
 from breakaway.errors import ScenarioError
-from breakaway.model.scenario.joint import SeizedJoint
+from breakaway.model.friction.asked import check_joint, check_residual
+from breakaway.model.scenario.core_joint import core_joint
+from breakaway.model.scenario.joint import AnyJoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,13 +22,14 @@ class ImposedMotion(ByValue):
     position_m: NDArray[np.float64]
     """x at the middle of each period, m."""
     bristle_m: NDArray[np.float64]
-    """z after each period, m."""
+    """z after each period, m; the mean of the elements, weighted with their stiffness; 0 for a
+    rigid law."""
     joint_force_n: NDArray[np.float64]
     """R at the middle of each period, N."""
 
 
 def impose_motion(
-    joint: SeizedJoint,
+    joint: AnyJoint,
     velocity_m_per_s: ArrayLike,
     *,
     period_s: float,
@@ -34,19 +37,26 @@ def impose_motion(
 ) -> ImposedMotion:
     """Move a relaxed joint with given velocities, each held for a period.
 
-    The bristle equation alone, without mass or controller: Stribeck curves, presliding loops,
-    frictional lag. Midpoint rule, second order in the period.
+    The friction law alone, without mass or controller: Stribeck curves, presliding loops,
+    frictional lag. Midpoint rule, second order in the period. A rigid joint that stands still
+    holds the force that it had while it moved, at most its level; before it has moved, none.
 
     Parameters
     ----------
-    joint : Lugre or TwoRegion
-        Its ``residual_n`` must be given: there is no part to take a weight from.
+    joint : AnyJoint
+        A joint of any law. Its ``residual_n`` must be given: there is no part to take a weight
+        from.
     velocity_m_per_s : array_like
-        Velocities, one-dimensional and finite.
+        Velocities in m/s, one-dimensional and finite.
     period_s : float
-        How long each is held, above 0.
+        How long each is held, in s, above 0.
     start_m : float, optional
-        Position at the start.
+        Position at the start, in m. Beyond the guide the force is zero.
+
+    Returns
+    -------
+    ImposedMotion
+        Arrays as long as the velocities.
 
     Raises
     ------
@@ -62,6 +72,7 @@ def impose_motion(
     '449'
 
     """
+    check_joint(joint)
     velocity = np.asarray(velocity_m_per_s, dtype=np.float64)
     if velocity.ndim != 1 or not np.all(np.isfinite(velocity)):
         raise ScenarioError("velocity_m_per_s: is not a one-dimensional array of finite numbers")
@@ -69,7 +80,6 @@ def impose_motion(
         raise ScenarioError(f"period_s: {period_s!r} is not > 0 and finite; give a time in s")
     if not -float("inf") < start_m < float("inf"):
         raise ScenarioError(f"start_m: {start_m!r} is not finite; give a position in m")
-    if joint.residual_n is None:
-        raise ScenarioError("joint.residual_n: is missing; give a number > 0, such as the weight")
-    columns = _core.impose(joint.model_dump(), start_m, period_s, velocity.tolist())
+    check_residual(joint)
+    columns = _core.impose(core_joint(joint), start_m, period_s, velocity)
     return ImposedMotion(*(np.frombuffer(column) for column in columns))
