@@ -12,13 +12,16 @@ pub mod instructions;
 pub mod lanes;
 mod lockstep;
 pub mod normal;
+pub mod paths;
 pub mod rig;
 pub mod run;
+pub mod threads;
 mod trusted;
+mod work;
 #[cfg(feature = "yardstick")]
 pub mod yardstick;
 
-pub use batch::{Batch, Ended, Results, Varied, Wanted, run_batch};
+pub use batch::{Batch, Results, Varied, Wanted};
 pub use draws::HeldDraws;
 pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
@@ -28,3 +31,4 @@ pub use rig::{
     Differentiated, Kept, Misfit, Record, Simulated, differentiate_rig, rig_misfits, simulate_rig,
 };
 pub use run::{Job, Run, TRACE_COLUMNS, Trace, run};
+pub use threads::{Ended, run_batch};

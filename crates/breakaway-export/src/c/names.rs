@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::graph::{Bits, Graph, Node, NodeId};
-use crate::program::Slot;
+use crate::routine::Slot;
 
 /// A path as one C identifier: dots become underscores.
 ///

@@ -141,11 +141,8 @@ def core_columns(
     varied = dict(_arrays(whole, ""))
     for path, column in varied.items():
         _put(shared, path, float(column[0]))
-    places = []
-    for path, column in varied.items():
-        probe = copy.deepcopy(shared)
-        _put(probe, path, float("nan"))
-        places.append((_core.number_place(probe), column))
+    found = _core.number_places(shared)
+    places = [(found[path], column) for path, column in varied.items()]
     return shared, places
 
 
