@@ -32,6 +32,7 @@ extern crate std;
 pub mod exp2;
 mod fused;
 mod parameters;
+mod states;
 
 pub mod actuator;
 pub mod control;
