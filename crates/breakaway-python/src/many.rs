@@ -1,12 +1,10 @@
 //! Runs a batch.
 
-use std::collections::HashMap;
-
 use breakaway_batch::draws::{Stream, fraction};
 use breakaway_batch::{Batch, FIGURES, Figure, Instructions, Varied, Wanted, run_batch};
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{IntoPyDict, PyBytes, PyDict};
 
 use crate::bytes::as_bytes;
 use crate::error::{ended, refused};
@@ -19,11 +17,13 @@ pub(crate) fn instructions() -> Vec<&'static str> {
     Instructions::available().into_iter().map(Instructions::name).collect()
 }
 
-/// The place of each number of a job by its path, such as `extraction.joint.stiction_n`.
+/// The place of each number of a job by its path, such as `extraction.joint.stiction_n`, in order.
 #[pyfunction]
-pub(crate) fn number_places(job: &Bound<'_, PyAny>) -> PyResult<HashMap<String, usize>> {
-    let paths = job::read(job)?.number_paths();
-    Ok(paths.into_iter().zip(0..).collect())
+pub(crate) fn number_places<'py>(
+    py: Python<'py>,
+    job: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    job::read(job)?.number_paths().into_iter().zip(0_usize..).into_py_dict(py)
 }
 
 /// Uniform draws on (0, 1) for number `part` of each run, as bytes of f64.
