@@ -142,7 +142,7 @@ def core_columns(
     for path, column in varied.items():
         _put(shared, path, float(column[0]))
     found = _core.number_places(shared)
-    places = [(found[path], column) for path, column in varied.items()]
+    places = [(found[_named_in_core(path)], column) for path, column in varied.items()]
     return shared, places
 
 
@@ -159,6 +159,11 @@ def _arrays(values: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Array
             yield from _arrays(value, f"{prefix}{name}.")
         elif isinstance(value, np.ndarray):
             yield f"{prefix}{name}", value
+
+
+def _named_in_core(path: str) -> str:
+    """Leave out the tables that hold a law's numbers: names of the core do."""
+    return ".".join(name for name in path.split(".") if name not in ("friction", "law"))
 
 
 def _put(values: dict[str, Any], path: str, value: float) -> None:
