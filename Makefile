@@ -41,6 +41,7 @@ lint: $(VENV)/.built $(VENV)/.development
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python tools/check_circles.py
 	$(BIN)/python tools/check_locks.py
 	$(BIN)/python tools/check_known_faults.py
 

@@ -9,6 +9,7 @@ import breakaway as bk
 from breakaway import _core
 from breakaway.run.batch import METRICS
 from breakaway.run.batch.columns import number_paths, with_nominal_controller
+from breakaway.run.resolution import core_job, resolve
 
 FIGURES = METRICS[:-1]
 INSTRUCTIONS = _core.instructions()
@@ -375,6 +376,34 @@ def test_each_number_on_its_own(kind, assert_same_bits):
         batch = bk.simulate_many(scenario, 5, vary=vary_all(scenario, [path], 5), threads=1)
         assert list(batch.varied) == [path]
         assert_same_bits(batch)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_number_of_a_job_has_a_place(name):
+    """Under the path by which Python has it, but for tables that hold a law's numbers.
+
+    The core has room for more elements than are given.
+    """
+    job = core_job(resolve(CASES[name]), 0)
+    places = _core.number_places(job)
+    assert list(places.values()) == list(range(len(places)))
+    paths = leaves({name: job[name] for name in ("extraction", "limits")})
+    given = {path.replace(".friction.", ".").replace(".law.", ".") for path in paths}
+    assert len(given) == len(paths)
+    assert given <= set(places)
+    assert {path for path in places if "_shares." not in path} <= given
+
+
+def leaves(values, prefix=""):
+    """Give the paths of all numbers within dictionaries and lists."""
+    items = values.items() if isinstance(values, dict) else enumerate(values)
+    found = set()
+    for name, value in items:
+        if isinstance(value, dict | list | tuple):
+            found |= leaves(value, f"{prefix}{name}.")
+        elif isinstance(value, float):
+            found.add(f"{prefix}{name}")
+    return found
 
 
 def test_numbers_are_found_in_every_room():

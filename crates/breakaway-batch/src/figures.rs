@@ -33,18 +33,24 @@ const EFFORT: Groups = Groups { effort: true, ..NONE };
 const EFFORT_AND_TIME: Groups = EFFORT.with(TIME);
 const EVENTS: Groups = Groups { events: true, ..NONE };
 
+/// A metric reported by its own name; with `finite`, as no number where it is infinite.
+macro_rules! metric {
+    ($name:ident, $needs:expr) => {
+        Figure { name: stringify!($name), needs: $needs, value: |_, run| run.metrics.$name }
+    };
+    ($name:ident, $needs:expr, finite) => {
+        Figure { value: |_, run| finite(run.metrics.$name), ..metric!($name, $needs) }
+    };
+}
+
 /// Every figure.
 pub const FIGURES: &[Figure] = &[
-    Figure { name: "simulated_s", needs: TIME, value: |_, run| run.metrics.time_s },
-    Figure { name: "iae_m_s", needs: IAE, value: |_, run| run.metrics.iae_m_s },
-    Figure { name: "ise_m2_s", needs: ERROR, value: |_, run| run.metrics.ise_m2_s },
-    Figure { name: "itae_m_s2", needs: ERROR, value: |_, run| run.metrics.itae_m_s2 },
-    Figure {
-        name: "largest_error_m",
-        needs: EXTREMES,
-        value: |_, run| run.metrics.largest_error_m,
-    },
-    Figure { name: "peak_force_n", needs: EXTREMES, value: |_, run| run.metrics.peak_force_n },
+    metric!(simulated_s, TIME),
+    metric!(iae_m_s, IAE),
+    metric!(ise_m2_s, ERROR),
+    metric!(itae_m_s2, ERROR),
+    metric!(largest_error_m, EXTREMES),
+    metric!(peak_force_n, EXTREMES),
     Figure {
         name: "peak_over_breakaway",
         needs: EXTREMES,
@@ -53,72 +59,56 @@ pub const FIGURES: &[Figure] = &[
     Figure {
         name: "mean_force_n",
         needs: FORCE_AND_TIME,
-        value: |_, run| run.metrics.impulse_n_s / run.metrics.time_s,
+        value: |_, run| run.metrics.impulse_n_s / run.metrics.simulated_s,
     },
     Figure {
         name: "rms_force_n",
         needs: FORCE_AND_TIME,
-        value: |_, run| (run.metrics.force_square_n2_s / run.metrics.time_s).sqrt(),
+        value: |_, run| (run.metrics.force_square_n2_s / run.metrics.simulated_s).sqrt(),
     },
-    Figure { name: "impulse_n_s", needs: FORCE, value: |_, run| run.metrics.impulse_n_s },
-    Figure { name: "work_j", needs: FORCE, value: |_, run| run.metrics.work_j },
+    metric!(impulse_n_s, FORCE),
+    metric!(work_j, FORCE),
     Figure {
         name: "friction_loss_j",
         needs: FORCE_AND_END,
         value: |_, run| run.metrics.joint_work_j - run.metrics.end_stored_j,
     },
-    Figure { name: "impacts", needs: IMPACTS, value: |_, run| run.metrics.impacts },
-    Figure { name: "contact_time_s", needs: IMPACTS, value: |_, run| run.metrics.contact_s },
+    metric!(impacts, IMPACTS),
+    metric!(contact_time_s, IMPACTS),
     Figure {
         name: "mean_impact_s",
         needs: IMPACTS,
-        value: |_, run| run.metrics.contact_s / run.metrics.impacts,
+        value: |_, run| run.metrics.contact_time_s / run.metrics.impacts,
     },
-    Figure { name: "largest_step_m", needs: IMPACTS, value: |_, run| run.metrics.largest_step_m },
-    Figure {
-        name: "largest_impact_work_j",
-        needs: IMPACTS,
-        value: |_, run| run.metrics.largest_impact_work_j,
-    },
-    Figure { name: "largest_jump_m", needs: JUMP, value: |_, run| run.metrics.largest_jump_m },
-    Figure {
-        name: "time_to_breakaway_s",
-        needs: EVENTS,
-        value: |_, run| known_time(run.metrics.breakaway_s),
-    },
-    Figure {
-        name: "time_to_release_s",
-        needs: EVENTS,
-        value: |_, run| known_time(run.metrics.release_s),
-    },
+    metric!(largest_step_m, IMPACTS),
+    metric!(largest_impact_work_j, IMPACTS),
+    metric!(largest_jump_m, JUMP),
+    metric!(time_to_breakaway_s, EVENTS, finite),
+    metric!(time_to_release_s, EVENTS, finite),
     Figure {
         name: "release_velocity_m_per_s",
         needs: EVENTS,
         value: |_, run| {
-            if run.metrics.release_s.is_finite() {
+            if run.metrics.time_to_release_s.is_finite() {
                 run.metrics.release_velocity_m_per_s
             } else {
                 f64::NAN
             }
         },
     },
-    Figure { name: "saturation_time_s", needs: FORCE, value: |_, run| run.metrics.saturated_s },
-    Figure { name: "supplied_work_j", needs: EFFORT, value: |_, run| run.metrics.supplied_j },
-    Figure { name: "actuator_loss_j", needs: EFFORT, value: |_, run| run.metrics.actuator_loss_j },
+    metric!(saturation_time_s, FORCE),
+    metric!(supplied_work_j, EFFORT),
+    metric!(actuator_loss_j, EFFORT),
     Figure {
         name: "rms_current_a",
         needs: EFFORT_AND_TIME,
-        value: |_, run| (run.metrics.current_square_a2_s / run.metrics.time_s).sqrt(),
+        value: |_, run| (run.metrics.current_square_a2_s / run.metrics.simulated_s).sqrt(),
     },
     Figure { name: "stack_cycles", needs: EFFORT, value: stack_cycles },
     Figure { name: "stack_loss_w", needs: EFFORT_AND_TIME, value: stack_loss_w },
-    Figure {
-        name: "stack_tension_n",
-        needs: EFFORT,
-        value: |_, run| known_time(run.metrics.stack_tension_n),
-    },
-    Figure { name: "stop_reason", needs: END, value: |_, run| run.metrics.stop_reason },
-    Figure { name: "final_position_m", needs: END, value: |_, run| run.metrics.end_position_m },
+    metric!(stack_tension_n, EFFORT, finite),
+    metric!(stop_reason, END),
+    metric!(final_position_m, END),
 ];
 
 /// The stack of an extraction, if it has one.
@@ -140,10 +130,10 @@ fn stack_cycles(job: &Job, run: &Run) -> f64 {
 fn stack_loss_w(job: &Job, run: &Run) -> f64 {
     stack(job).map_or(f64::NAN, |piezo| {
         let resistance_ohm = piezo.loss_tangent / (2000.0 * PI * piezo.capacitance_f);
-        resistance_ohm * run.metrics.current_square_a2_s / run.metrics.time_s
+        resistance_ohm * run.metrics.current_square_a2_s / run.metrics.simulated_s
     })
 }
 
-fn known_time(time_s: f64) -> f64 {
-    if time_s.is_finite() { time_s } else { f64::NAN }
+fn finite(value: f64) -> f64 {
+    if value.is_finite() { value } else { f64::NAN }
 }

@@ -12,14 +12,17 @@ pub mod instructions;
 pub mod lanes;
 mod lockstep;
 pub mod normal;
+pub mod paths;
 pub mod rig;
 pub mod run;
 pub mod steady;
+pub mod threads;
 mod trusted;
+mod work;
 #[cfg(feature = "yardstick")]
 pub mod yardstick;
 
-pub use batch::{Batch, Ended, Results, Varied, Wanted, run_batch};
+pub use batch::{Batch, Results, Varied, Wanted};
 pub use draws::HeldDraws;
 pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
@@ -32,3 +35,4 @@ pub use run::{Job, Run, TRACE_COLUMNS, Trace, run};
 pub use steady::{
     FrictionCurve, SteadyFriction, breakaway_forces, friction_curve, steady_friction,
 };
+pub use threads::{Ended, run_batch};

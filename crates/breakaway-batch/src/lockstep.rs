@@ -5,54 +5,18 @@
 
 use std::marker::PhantomData;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::SyncSender;
 
 use breakaway_core::disturbance::{Disturbance, Factors};
-use breakaway_core::metrics::{Groups, Limits};
+use breakaway_core::metrics::Limits;
 use breakaway_core::real::Block;
 use breakaway_core::sensor::Noise;
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Name};
 
-use crate::batch::Batch;
 use crate::draws::{HeldDraws, noise};
 use crate::instructions::Kernel;
 use crate::lanes::Wide;
 use crate::run::Run;
-
-/// Runs of a batch that nobody has taken yet.
-pub(crate) struct Queue {
-    next: AtomicUsize,
-    end: usize,
-}
-
-impl Queue {
-    pub(crate) fn of(runs: Range<usize>) -> Self {
-        Self { next: AtomicUsize::new(runs.start), end: runs.end }
-    }
-
-    /// Takes up to `count` runs.
-    pub(crate) fn take(&self, count: usize) -> Option<Range<usize>> {
-        let first = self.next.fetch_add(count, Ordering::Relaxed).min(self.end);
-        let taken = first..self.end.min(first.saturating_add(count));
-        (!taken.is_empty()).then_some(taken)
-    }
-}
-
-/// What the threads of a batch share.
-pub(crate) struct Work<'a> {
-    pub(crate) batch: &'a Batch<'a>,
-    pub(crate) groups: Groups,
-    pub(crate) going: &'a AtomicBool,
-    /// Where finished runs go, each with its number in the batch.
-    pub(crate) done: SyncSender<(usize, Run)>,
-}
-
-impl Work<'_> {
-    pub(crate) fn goes_on(&self) -> bool {
-        self.going.load(Ordering::Relaxed)
-    }
-}
+use crate::work::{Queue, Work};
 
 /// Runs of any kinds. A lane takes the next run as soon as its own has ended, until there are none or
 /// it is told to stop.

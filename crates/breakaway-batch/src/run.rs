@@ -11,6 +11,7 @@ use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Name, Outcome,
 use std::ops::Range;
 
 use crate::draws::{HeldDraws, noise};
+use crate::paths::numbered;
 
 /// The names of a trace's columns. The last three are of a feed axis, and empty without one.
 pub const TRACE_COLUMNS: [&str; 10] = [
@@ -334,6 +335,18 @@ impl Job {
             value
         });
         numbers
+    }
+
+    /// The path of each of [`Job::numbers`], such as `extraction.joint.stiction_n`.
+    #[must_use]
+    pub fn number_paths(&self) -> Vec<String> {
+        let mut paths = Vec::new();
+        self.extraction.map(&mut |name, value| {
+            paths.push(format!("extraction.{name}"));
+            value
+        });
+        self.limits.map(&mut |name, _| paths.push(format!("limits.{name}")));
+        numbered(paths)
     }
 
     /// The same kinds with other numbers, each by its place in [`Job::numbers`].

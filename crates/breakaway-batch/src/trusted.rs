@@ -10,8 +10,9 @@ use breakaway_core::{Extraction, ExtractionState, Metrics};
 use crate::draws::HeldDraws;
 use crate::instructions::Kernel;
 use crate::lanes::Wide;
-use crate::lockstep::{Work, disturbed, lane_of};
+use crate::lockstep::{disturbed, lane_of};
 use crate::run::{Run, plain_kinds};
+use crate::work::Work;
 
 /// How many samples go by between two looks at the bounds.
 const BLOCK: u64 = 4096;

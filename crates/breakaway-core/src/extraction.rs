@@ -1,7 +1,7 @@
 //! The block diagram of an extraction: one named call per block (paper, figure 5).
 
 use crate::actuator::{Actuator, ActuatorState, Command, Effort};
-use crate::control::{Controller, ControllerState, Measurement, Watch, WatchState};
+use crate::control::{Control, Controller, ControllerState, Measurement, Watch, WatchState};
 use crate::disturbance::{Disturbance, Draws, Factors};
 use crate::joint::Joint;
 use crate::name::{Name, within};
@@ -150,7 +150,7 @@ impl<R: Real> ExtractionState<R> {
             actuator: ActuatorState::at_rest(),
             sensors: SensorsState::at_rest(),
             watch: WatchState::at_rest(),
-            controller: ControllerState::at_rest(plant.position_m),
+            controller: ControllerState::at_rest(),
             sampling: LoopState { samples: zero, waiting: Command::force(zero), force_n: zero },
         }
     }

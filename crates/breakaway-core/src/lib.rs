@@ -33,6 +33,7 @@ pub mod exp2;
 mod float;
 mod fused;
 mod parameters;
+mod states;
 
 pub mod actuator;
 pub mod control;

@@ -47,7 +47,7 @@ pub enum Outcome {
 /// it was at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Groups {
-    /// `time_s`.
+    /// `simulated_s`.
     pub time: bool,
     /// `iae_m_s`.
     pub iae: bool,
@@ -55,17 +55,17 @@ pub struct Groups {
     pub error: bool,
     /// `largest_error_m`, `peak_force_n`.
     pub extremes: bool,
-    /// `impulse_n_s`, `force_square_n2_s`, `work_j`, `joint_work_j`, `saturated_s`.
+    /// `impulse_n_s`, `force_square_n2_s`, `work_j`, `joint_work_j`, `saturation_time_s`.
     pub force: bool,
-    /// `contact_s`, `impacts`, `largest_step_m`, `largest_impact_work_j`.
+    /// `contact_time_s`, `impacts`, `largest_step_m`, `largest_impact_work_j`.
     pub impacts: bool,
     /// `largest_jump_m`.
     pub jump: bool,
-    /// `breakaway_s`, `release_s`, `release_velocity_m_per_s`.
+    /// `time_to_breakaway_s`, `time_to_release_s`, `release_velocity_m_per_s`.
     pub events: bool,
-    /// `supplied_j`, `actuator_loss_j`, `charge_c`, `current_square_a2_s`, `stack_tension_n`.
+    /// `supplied_work_j`, `actuator_loss_j`, `charge_c`, `current_square_a2_s`, `stack_tension_n`.
     pub effort: bool,
-    /// `end_position_m`, `end_stored_j`.
+    /// `final_position_m`, `end_stored_j`.
     pub end: bool,
 }
 
@@ -128,7 +128,7 @@ parameters! {
         /// Why the watch stopped the controller; 0 if it did not.
         pub stop_reason,
         /// ∫ dt over counted samples, s.
-        pub time_s,
+        pub simulated_s,
         /// IAE = ∫ |e| dt, m s.
         pub iae_m_s,
         /// ISE = ∫ e² dt, m² s.
@@ -148,9 +148,9 @@ parameters! {
         /// ∫ R dx, J: lost in the joint or stored in its bristles.
         pub joint_work_j,
         /// Time during which the actuator could not deliver the command, s.
-        pub saturated_s,
+        pub saturation_time_s,
         /// Time in contact, s: with F above the contact force.
-        pub contact_s,
+        pub contact_time_s,
         /// Number of impacts: stretches of time in contact.
         pub impacts,
         /// 1 while in contact, else 0.
@@ -168,13 +168,13 @@ parameters! {
         /// Largest jump, m.
         pub largest_jump_m,
         /// When the joint broke loose, s.
-        pub breakaway_s,
+        pub time_to_breakaway_s,
         /// When the part came free to stay, s.
-        pub release_s,
+        pub time_to_release_s,
         /// v when the part came free, m/s.
         pub release_velocity_m_per_s,
         /// Work that the actuator's drives supplied, J.
-        pub supplied_j,
+        pub supplied_work_j,
         /// Energy lost in the actuator and its contact, J.
         pub actuator_loss_j,
         /// ∫ |I| dt of the amplifier, C.
@@ -184,7 +184,7 @@ parameters! {
         /// Largest tension of the stack beyond its preload, N; below 0 if it was always pressed.
         pub stack_tension_n,
         /// x at the end, or when the run left its bounds, m.
-        pub end_position_m,
+        pub final_position_m,
         /// Energy in the bristles then, J.
         pub end_stored_j,
     }
@@ -199,7 +199,7 @@ impl<R: Real> Metrics<R> {
             bounded: R::one(),
             over: zero,
             stop_reason: zero,
-            time_s: zero,
+            simulated_s: zero,
             iae_m_s: zero,
             ise_m2_s: zero,
             itae_m_s2: zero,
@@ -209,8 +209,8 @@ impl<R: Real> Metrics<R> {
             force_square_n2_s: zero,
             work_j: zero,
             joint_work_j: zero,
-            saturated_s: zero,
-            contact_s: zero,
+            saturation_time_s: zero,
+            contact_time_s: zero,
             impacts: zero,
             in_contact: zero,
             step_m: zero,
@@ -219,15 +219,15 @@ impl<R: Real> Metrics<R> {
             largest_impact_work_j: zero,
             jump_m: zero,
             largest_jump_m: zero,
-            breakaway_s: not_yet,
-            release_s: not_yet,
+            time_to_breakaway_s: not_yet,
+            time_to_release_s: not_yet,
             release_velocity_m_per_s: zero,
-            supplied_j: zero,
+            supplied_work_j: zero,
             actuator_loss_j: zero,
             charge_c: zero,
             current_square_a2_s: zero,
             stack_tension_n: R::constant(f64::NEG_INFINITY),
-            end_position_m: zero,
+            final_position_m: zero,
             end_stored_j: zero,
         }
     }
@@ -248,7 +248,7 @@ impl<R: Real> Metrics<R> {
         let bounded = was_bounded & within;
         self.bounded = R::flag(bounded | !going);
         self.count(wanted, limits, sample, was_bounded, bounded);
-        let since_s = sample.time_s + sample.period_s - self.release_s;
+        let since_s = sample.time_s + sample.period_s - self.time_to_release_s;
         // What left its bounds is not over: a run in lanes goes on beside the others, and stays so.
         self.over = R::flag(!going | (bounded & limits.after_release_s.le(since_s)));
     }
@@ -288,7 +288,7 @@ impl<R: Real> Metrics<R> {
         let error = (sample.reference_m - sample.position_m).abs();
         let period_s = where_it_holds(bounded, sample.period_s);
         if wanted.time {
-            self.time_s = self.time_s + period_s;
+            self.simulated_s = self.simulated_s + period_s;
         }
         if wanted.iae {
             self.iae_m_s = where_it_holds(bounded, error).mul_add(sample.period_s, self.iae_m_s);
@@ -313,7 +313,8 @@ impl<R: Real> Metrics<R> {
         }
         if wanted.end {
             self.stop_reason = R::select(bounded, sample.stop_reason, self.stop_reason);
-            self.end_position_m = R::select(bounded, sample.next_position_m, self.end_position_m);
+            self.final_position_m =
+                R::select(bounded, sample.next_position_m, self.final_position_m);
             self.end_stored_j = R::select(bounded, sample.next_stored_j, self.end_stored_j);
         }
     }
@@ -337,7 +338,7 @@ impl<R: Real> Metrics<R> {
             self.work_j = self.work_j + where_it_holds(moved, sample.work_j);
             self.joint_work_j = self.joint_work_j + where_it_holds(moved, sample.joint_work_j);
             let saturated_s = where_it_holds(bounded, sample.effort.saturated_s);
-            self.saturated_s = self.saturated_s + saturated_s;
+            self.saturation_time_s = self.saturation_time_s + saturated_s;
         }
         if wanted.impacts {
             self.count_impacts(limits, period_s, force, travel);
@@ -358,7 +359,7 @@ impl<R: Real> Metrics<R> {
 
     #[inline(always)]
     fn count_effort(&mut self, effort: &Effort<R>, bounded: R::Mask) {
-        self.supplied_j = self.supplied_j + where_it_holds(bounded, effort.supplied_j);
+        self.supplied_work_j = self.supplied_work_j + where_it_holds(bounded, effort.supplied_j);
         self.actuator_loss_j = self.actuator_loss_j + where_it_holds(bounded, effort.lost_j);
         self.charge_c = self.charge_c + where_it_holds(bounded, effort.charge_c);
         let square = where_it_holds(bounded, effort.current_square_a2_s);
@@ -373,7 +374,7 @@ impl<R: Real> Metrics<R> {
         let contact = limits.contact_force_n.lt(force);
         let starts = contact & !self.in_contact.is_set();
         self.in_contact = R::flag(contact);
-        self.contact_s = self.contact_s + R::select(contact, period_s, zero);
+        self.contact_time_s = self.contact_time_s + R::select(contact, period_s, zero);
         self.impacts = self.impacts + R::flag(starts);
         self.step_m = R::select(starts, zero, self.step_m) + travel;
         self.largest_step_m = self.largest_step_m.max(self.step_m);
@@ -396,16 +397,16 @@ impl<R: Real> Metrics<R> {
         let not_yet = R::constant(f64::INFINITY);
         let next_s = R::select(bounded, sample.time_s + sample.period_s, not_yet);
         let loose = limits.breakaway_travel_m.lt(sample.next_position_m);
-        self.breakaway_s = self.breakaway_s.min(R::select(loose, next_s, not_yet));
+        self.time_to_breakaway_s = self.time_to_breakaway_s.min(R::select(loose, next_s, not_yet));
         // A part that is pulled back into its guide is not free: only the last release counts.
         let free = limits.release_position_m.le(sample.next_position_m);
-        let since_s = R::select(free, self.release_s.min(next_s), not_yet);
+        let since_s = R::select(free, self.time_to_release_s.min(next_s), not_yet);
         self.release_velocity_m_per_s = R::select(
-            next_s.lt(self.release_s) & free,
+            next_s.lt(self.time_to_release_s) & free,
             sample.next_velocity_m_per_s,
             self.release_velocity_m_per_s,
         );
-        self.release_s = R::select(bounded, since_s, self.release_s);
+        self.time_to_release_s = R::select(bounded, since_s, self.time_to_release_s);
     }
 }
 
@@ -433,7 +434,7 @@ impl Metrics<f64> {
             Outcome::Diverged
         } else if exceeded {
             Outcome::LimitExceeded
-        } else if self.release_s.is_finite() {
+        } else if self.time_to_release_s.is_finite() {
             Outcome::Released
         } else {
             Outcome::NotReleased

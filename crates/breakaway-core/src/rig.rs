@@ -186,7 +186,8 @@ impl<R: Real> Rig<R> {
             joint_force_n: friction_n,
             ..PlantState::at_rest()
         };
-        let pid = PidState::at_rest(x - v * row.period_s);
+        let previous_position_m = x - v * row.period_s;
+        let pid = PidState { previous_position_m, ..PidState::at_rest() };
         let mut state = RigState { plant, cascade: CascadeState::moving(x, v, row.period_s), pid };
         if let Drive::Pid(limited) = drive {
             self.start_pid(limited, &mut state, row);
@@ -255,7 +256,7 @@ impl<R: Real> Rig<R> {
             period_s: row.period_s,
             range,
         };
-        range.limit(limited.pid.step(&mut state.pid, &measured))
+        range.limit(limited.pid.force(&mut state.pid, &measured))
     }
 
     /// The force at a row whose motion is measured; the bristle follows to the next row.

@@ -21,6 +21,6 @@ fn work_is_joint_work_and_kinetic_energy() {
             let missing = metrics.work_j - metrics.joint_work_j - kinetic;
             assert!(missing.abs() <= 1e-9 * metrics.work_j.max(1e-3), "{missing:e} J at {n}");
         }
-        assert!(metrics.release_s.is_finite() && metrics.work_j > 10.0, "{metrics:?}");
+        assert!(metrics.time_to_release_s.is_finite() && metrics.work_j > 10.0, "{metrics:?}");
     }
 }

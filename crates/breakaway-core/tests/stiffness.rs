@@ -43,7 +43,7 @@ fn one_implicit_step_per_period_stays_close_to_the_oracle() {
         let extraction = extraction(stiffness, speed);
         let oracle = run(extraction, Integrator::Rk4, 100);
         let ours = run(extraction, Integrator::LinearlyImplicitMidpoint, 1);
-        assert!(ours.release_s.is_finite() && oracle.release_s.is_finite());
+        assert!(ours.time_to_release_s.is_finite() && oracle.time_to_release_s.is_finite());
         let iae = ours.iae_m_s / oracle.iae_m_s - 1.0;
         let peak = ours.peak_force_n / oracle.peak_force_n - 1.0;
         assert!(iae.abs() < bound && peak.abs() < 1e-4, "{stiffness}, {speed}: {iae:e} {peak:e}");

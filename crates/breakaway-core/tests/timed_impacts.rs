@@ -1,7 +1,7 @@
 //! Timed impacts, shown positions that are made up: what they learn from a slip.
 
 use breakaway_core::actuator::ForceRange;
-use breakaway_core::control::{Measurement, TimedImpacts, TimedImpactsState};
+use breakaway_core::control::{Control, Measurement, TimedImpacts, TimedImpactsState};
 
 const PERIOD_S: f64 = 5e-5;
 const IMPACTS: TimedImpacts<f64> = TimedImpacts {

@@ -84,7 +84,7 @@ fn the_loop_runs_the_same_in_other_units() {
                     &theirs.step(&mut their_state, draws),
                 );
             }
-            assert!(metrics.breakaway_s.is_finite() && state.plant.position_m > 0.02);
+            assert!(metrics.time_to_breakaway_s.is_finite() && state.plant.position_m > 0.02);
             let converted = state.map(&mut |name, value| value * units.factor(name.field()));
             assert_eq!(their_state, converted);
             let converted = metrics.map(&mut |name, value| value * units.factor(name.field()));

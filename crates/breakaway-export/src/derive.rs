@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::graph::{Builder, Graph, Label, Node, NodeId};
 use crate::passes::without_dead;
-use crate::program::{Routine, Slot};
+use crate::routine::{Routine, Slot};
 
 /// What follows from parameters alone.
 #[derive(Clone, Debug, Default)]

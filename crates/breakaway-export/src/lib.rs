@@ -30,6 +30,7 @@ pub mod passes;
 pub mod program;
 mod record_model;
 pub mod reference;
+pub mod routine;
 
 pub use expr::{Expr, ExprMask, Recorder, record};
 pub use graph::{Bits, Graph, Label, Node, NodeId};

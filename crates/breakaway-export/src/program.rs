@@ -2,85 +2,14 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use breakaway_core::{Extraction, ExtractionState};
+use breakaway_core::Extraction;
 
 use crate::derive::{Derivation, derive};
-use crate::graph::{Graph, Node};
+use crate::graph::{Graph, Node, NodeId};
 use crate::model::What;
 use crate::passes::{Scalar, needed, simplify_knowing};
 use crate::record_model::record_model;
-
-/// Where a number of a routine is kept. Written as `kind/name` where a graph names its inputs and
-/// outputs.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Slot {
-    /// A parameter, by its path in the extraction.
-    Parameter(String),
-    /// What follows from parameters alone.
-    Derived(String),
-    /// A state, by its path in the extraction's state.
-    State(String),
-    /// An input of a step.
-    Input(String),
-    /// A number that one routine hands to another, or a draw.
-    Signal(String),
-    /// An output of a step.
-    Output(String),
-}
-
-impl Slot {
-    /// Reads `kind/name`.
-    ///
-    /// # Panics
-    /// If it is none.
-    #[must_use]
-    pub fn parse(text: &str) -> Self {
-        let (kind, name) = text.split_once('/').expect("kind/name");
-        let name = name.to_string();
-        match kind {
-            "parameter" => Self::Parameter(name),
-            "derived" => Self::Derived(name),
-            "state" => Self::State(name),
-            "input" => Self::Input(name),
-            "signal" => Self::Signal(name),
-            "output" => Self::Output(name),
-            _ => panic!("{kind} is no kind of slot"),
-        }
-    }
-
-    /// Its name without its kind.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Parameter(name)
-            | Self::Derived(name)
-            | Self::State(name)
-            | Self::Input(name)
-            | Self::Signal(name)
-            | Self::Output(name) => name,
-        }
-    }
-}
-
-/// A stretch of a step.
-#[derive(Clone, Debug)]
-pub struct Routine {
-    /// Its name, such as `move`.
-    pub name: &'static str,
-    /// What it does.
-    pub graph: Graph,
-    /// How many times in a row it is computed in a step.
-    pub times: u32,
-}
-
-/// A number with what it is at first: a parameter's default, or a state's value after a reset.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Value {
-    /// Its path.
-    pub path: String,
-    /// In double precision, as the scenario has it.
-    pub value: f64,
-}
+use crate::routine::{Routine, Slot, Value, parameters, states};
 
 /// The recorded step of a controller, a plant or a loop.
 #[derive(Clone, Debug)]
@@ -171,42 +100,6 @@ fn kept(values: Vec<Value>, keep: impl Fn(&str) -> bool) -> Vec<Value> {
     values.into_iter().filter(|value| keep(&value.path)).collect()
 }
 
-/// Every number of an extraction; the elements of an array are numbered from 0.
-#[must_use]
-pub fn parameters(extraction: &Extraction<f64>) -> Vec<Value> {
-    let mut values = Vec::new();
-    extraction.map(&mut |name, value| {
-        values.push(Value { path: name.to_string(), value });
-        value
-    });
-    numbered(values)
-}
-
-/// Every number of a state at rest, named likewise.
-#[must_use]
-pub fn states() -> Vec<Value> {
-    let mut values = Vec::new();
-    ExtractionState::at_rest()
-        .map(&mut |name, value| values.push(Value { path: name.to_string(), value }));
-    numbered(values)
-}
-
-fn numbered(mut values: Vec<Value>) -> Vec<Value> {
-    let mut counts: HashMap<String, usize> = HashMap::new();
-    for value in &values {
-        *counts.entry(value.path.clone()).or_default() += 1;
-    }
-    let mut next: HashMap<String, usize> = HashMap::new();
-    for value in &mut values {
-        if counts[&value.path] > 1 {
-            let place = next.entry(value.path.clone()).or_default();
-            *place += 1;
-            value.path = format!("{}.{}", value.path, *place - 1);
-        }
-    }
-    values
-}
-
 fn signals(routines: &[Routine]) -> Vec<String> {
     let mut names = Vec::new();
     for routine in routines {
@@ -245,7 +138,7 @@ fn reduce<R: Scalar>(routines: Vec<Routine>, states: &[Value]) -> Vec<Routine> {
 
 /// The outputs that are the input of the same name.
 fn left_alone(graph: &Graph) -> BTreeSet<String> {
-    let same = |(name, id): &&(String, crate::graph::NodeId)| match graph.nodes()[id.index()] {
+    let same = |(name, id): &&(String, NodeId)| match graph.nodes()[id.index()] {
         Node::Input(n) => graph.inputs()[n as usize] == *name,
         _ => false,
     };

@@ -8,7 +8,7 @@ use breakaway_core::{Draws, Extraction, ExtractionState, Name, Real};
 
 use crate::expr::{Expr, Recorder, record};
 use crate::model::{self, What};
-use crate::program::{Routine, Value, parameters, states};
+use crate::routine::{Routine, Value, parameters, states};
 
 /// What the numbers of an extraction and of its state are called in a recording.
 struct Model<'a> {

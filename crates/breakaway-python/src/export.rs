@@ -9,8 +9,9 @@ use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 
+use crate::bytes::as_bytes;
 use crate::error::refused;
-use crate::{as_bytes, job};
+use crate::job;
 
 /// The C of a part of an extraction: numbers with their names, and function bodies.
 #[pyfunction]

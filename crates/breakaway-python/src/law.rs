@@ -6,7 +6,7 @@ use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::as_bytes;
+use crate::bytes::as_bytes;
 use crate::error::{refused, unreadable};
 
 type Bytes<'py> = Bound<'py, PyBytes>;

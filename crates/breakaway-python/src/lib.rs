@@ -1,16 +1,20 @@
 //! Python binding: converts values and maps errors. No loops, no defaults, no physics.
 
+mod bytes;
 mod error;
 mod export;
 mod job;
 mod law;
 mod many;
+mod outcome;
 mod rig;
 
 use breakaway_batch::{FIGURES, Run, TRACE_COLUMNS, run};
-use breakaway_core::Outcome;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+
+use crate::bytes::as_bytes;
+use crate::outcome::{OUTCOMES, outcome_code};
 
 /// Runs one extraction. Gives (outcome, figures by name, trace columns by name as bytes of f64).
 #[pyfunction]
@@ -28,33 +32,12 @@ fn run_one<'py>(
     Ok((outcome, figures, trace_columns(py, &finished)?))
 }
 
-/// The names of the outcomes, each at the place of its code.
-const OUTCOMES: [&str; 4] = ["released", "not_released", "diverged", "limit_exceeded"];
-
-fn outcome_code(outcome: Outcome) -> u8 {
-    match outcome {
-        Outcome::Released => 0,
-        Outcome::NotReleased => 1,
-        Outcome::Diverged => 2,
-        Outcome::LimitExceeded => 3,
-    }
-}
-
 fn trace_columns<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     for (name, values) in TRACE_COLUMNS.iter().zip(&run.trace) {
         columns.set_item(name, as_bytes(py, values)?)?;
     }
     Ok(columns)
-}
-
-fn as_bytes<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyBytes>> {
-    PyBytes::new_with(py, values.len() * 8, |buffer| {
-        for (slot, value) in buffer.chunks_exact_mut(8).zip(values) {
-            slot.copy_from_slice(&value.to_ne_bytes());
-        }
-        Ok(())
-    })
 }
 
 /// The compiled core of breakaway.
@@ -67,7 +50,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run_one, module)?)?;
     module.add_function(wrap_pyfunction!(many::run_many, module)?)?;
     module.add_function(wrap_pyfunction!(many::instructions, module)?)?;
-    module.add_function(wrap_pyfunction!(many::number_place, module)?)?;
+    module.add_function(wrap_pyfunction!(many::number_places, module)?)?;
     module.add_function(wrap_pyfunction!(many::fractions, module)?)?;
     module.add_function(wrap_pyfunction!(export::export_code, module)?)?;
     module.add_function(wrap_pyfunction!(export::export_reference, module)?)?;

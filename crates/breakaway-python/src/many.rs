@@ -4,10 +4,12 @@ use breakaway_batch::draws::{Stream, fraction};
 use breakaway_batch::{Batch, FIGURES, Figure, Instructions, Varied, Wanted, run_batch};
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{IntoPyDict, PyBytes, PyDict};
 
+use crate::bytes::as_bytes;
 use crate::error::{ended, refused};
-use crate::{as_bytes, job, outcome_code};
+use crate::job;
+use crate::outcome::outcome_code;
 
 /// The names of the instructions that this processor has, the fastest first.
 #[pyfunction]
@@ -15,15 +17,13 @@ pub(crate) fn instructions() -> Vec<&'static str> {
     Instructions::available().into_iter().map(Instructions::name).collect()
 }
 
-/// The place of a number among the numbers of a job: that of the only one that is not a number.
+/// The place of each number of a job by its path, such as `extraction.joint.stiction_n`, in order.
 #[pyfunction]
-pub(crate) fn number_place(job: &Bound<'_, PyAny>) -> PyResult<usize> {
-    let numbers = job::read(job)?.numbers();
-    let mut places = numbers.iter().enumerate().filter(|(_, number)| number.is_nan());
-    match (places.next(), places.next()) {
-        (Some((place, _)), None) => Ok(place),
-        _ => Err(refused("not exactly one number of the job is not a number")),
-    }
+pub(crate) fn number_places<'py>(
+    py: Python<'py>,
+    job: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    job::read(job)?.number_paths().into_iter().zip(0_usize..).into_py_dict(py)
 }
 
 /// Uniform draws on (0, 1) for number `part` of each run, as bytes of f64.

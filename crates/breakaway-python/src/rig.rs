@@ -6,7 +6,7 @@ use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::as_bytes;
+use crate::bytes::as_bytes;
 use crate::error::{no_thread, refused, unreadable};
 
 /// A record of a rig, and how models of it are run.

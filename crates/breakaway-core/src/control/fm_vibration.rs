@@ -3,6 +3,7 @@
 use super::Measurement;
 use crate::name::Name;
 use crate::real::Real;
+use crate::states::states;
 
 /// The course of the force during a pulse, from 0 to 1 and back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,13 +45,14 @@ pub struct FmVibration<R> {
     pub shape: PulseShape,
 }
 
-/// What moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FmVibrationState<R> {
-    /// Phase in cycles, 0 to 1.
-    pub phase_cycles: R,
-    /// Time in s since the pulse's start.
-    pub since_pulse_s: R,
+states! {
+    /// What moves in pulses.
+    pub struct FmVibrationState {
+        /// Phase in cycles, 0 to 1.
+        pub phase_cycles,
+        /// Time in s since the pulse's start.
+        pub since_pulse_s,
+    }
 }
 
 impl<R: Real> FmVibration<R> {
@@ -76,7 +78,7 @@ impl<R: Real> FmVibration<R> {
 
     /// The force in N at a sample for an amplitude in N; moves phase and clock by one period.
     #[inline(always)]
-    pub fn step(
+    pub fn force(
         &self,
         state: &mut FmVibrationState<R>,
         amplitude_n: R,
@@ -161,16 +163,13 @@ mod tests {
         }
     }
 
-    fn start() -> FmVibrationState<f64> {
-        FmVibrationState { phase_cycles: 0.0, since_pulse_s: 0.0 }
-    }
-
     #[test]
     fn a_pulse_keeps_its_width_while_the_error_moves() {
-        let (mut state, mut on, mut widths) = (start(), 0, std::vec::Vec::new());
+        let (mut state, mut on, mut widths) =
+            (FmVibrationState::at_rest(), 0, std::vec::Vec::new());
         for n in 0..100_000 {
             let error = 1e-3 * f64::from(n % 370) / 370.0;
-            let force = vibration(PulseShape::Rectangular).step(&mut state, 5.0, &measured(error));
+            let force = vibration(PulseShape::Rectangular).force(&mut state, 5.0, &measured(error));
             if force > 0.0 {
                 on += 1;
             } else if on > 0 {
@@ -193,10 +192,11 @@ mod tests {
     #[test]
     fn pulses_per_second_and_their_width_follow_the_error() {
         for (error, hertz) in [(0.0, 80), (0.5e-3, 120), (-1e-3, 160), (1.0, 160)] {
-            let (mut state, mut starts, mut samples, mut last) = (start(), 0, 0, 0.0);
+            let (mut state, mut starts, mut samples, mut last) =
+                (FmVibrationState::at_rest(), 0, 0, 0.0);
             for _ in 0..100_000 {
                 let force =
-                    vibration(PulseShape::Rectangular).step(&mut state, 5.0, &measured(error));
+                    vibration(PulseShape::Rectangular).force(&mut state, 5.0, &measured(error));
                 starts += i32::from(force > 0.0 && last == 0.0);
                 samples += i32::from(force > 0.0);
                 last = force;
@@ -213,9 +213,9 @@ mod tests {
             (PulseShape::HalfSine, 2.0 / core::f64::consts::PI),
             (PulseShape::RaisedCosine, 0.5),
         ] {
-            let (mut state, mut sum) = (start(), 0.0);
+            let (mut state, mut sum) = (FmVibrationState::at_rest(), 0.0);
             for _ in 0..1250 {
-                sum += vibration(shape).step(&mut state, 1.0, &measured(0.0));
+                sum += vibration(shape).force(&mut state, 1.0, &measured(0.0));
             }
             assert!((sum / 100.0 - mean).abs() < 0.02, "{shape:?}: {}", sum / 100.0);
         }
@@ -226,6 +226,6 @@ mod tests {
         let mut held = vibration(PulseShape::Rectangular);
         held.base_fraction = 0.4;
         let mut state = FmVibrationState { phase_cycles: 0.5, since_pulse_s: 5e-3 };
-        assert_eq!(held.step(&mut state, 10.0, &measured(0.0)), 4.0);
+        assert_eq!(held.force(&mut state, 10.0, &measured(0.0)), 4.0);
     }
 }

@@ -1,9 +1,10 @@
 //! The naive way: push harder until something gives.
 
-use super::Measurement;
+use super::{Control, Measurement};
 use crate::actuator::Command;
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::states::states;
 
 parameters! {
     /// A force that grows at a constant rate until the part is out.
@@ -22,14 +23,23 @@ parameters! {
     }
 }
 
-impl<R: Real> ForceRamp<R> {
-    /// The command at a sample; `force_n` is what moves.
+states! {
+    /// What moves in a force ramp.
+    pub struct ForceRampState {
+        /// F in N.
+        pub force_n,
+    }
+}
+
+impl<R: Real> Control<R> for ForceRamp<R> {
+    type State = ForceRampState<R>;
+
     #[inline(always)]
-    pub fn step(&self, force_n: &mut R, measured: &Measurement<R>) -> Command<R> {
+    fn step(&self, state: &mut ForceRampState<R>, measured: &Measurement<R>) -> Command<R> {
         R::section("ramp: F = F + r T_s while x < l, then 0");
         let inside = measured.position_m.lt(self.travel_m);
-        let grown = self.rate_n_per_s.mul_add(measured.period_s, *force_n).named("grown_n");
-        *force_n = R::select(inside, measured.range.limit(grown), R::zero()).named("ramp_n");
-        Command::force(*force_n)
+        let grown = self.rate_n_per_s.mul_add(measured.period_s, state.force_n).named("grown_n");
+        state.force_n = R::select(inside, measured.range.limit(grown), R::zero()).named("ramp_n");
+        Command::force(state.force_n)
     }
 }

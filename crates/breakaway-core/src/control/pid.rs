@@ -1,10 +1,13 @@
 //! Sampled PID force controller.
 
-use super::Measurement;
+use super::{Control, Measurement};
+use crate::actuator::Command;
 use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::reference::Setpoint;
+use crate::states::states;
 
 parameters! {
     /// PID gains.
@@ -76,22 +79,15 @@ pub struct Pid<R> {
     pub tracking_time_s: R,
 }
 
-/// What moves in a PID.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PidState<R> {
-    /// I in N.
-    pub integral_n: R,
-    /// d in m/s.
-    pub derivative_m_per_s: R,
-    /// The measured position at the last sample, m.
-    pub previous_position_m: R,
-}
-
-impl<R: Real> PidState<R> {
-    /// Before the first sample, with the part at `position_m`.
-    pub fn at_rest(position_m: R) -> Self {
-        let zero = R::zero();
-        Self { integral_n: zero, derivative_m_per_s: zero, previous_position_m: position_m }
+states! {
+    /// What moves in a PID.
+    pub struct PidState {
+        /// I in N.
+        pub integral_n,
+        /// d in m/s.
+        pub derivative_m_per_s,
+        /// The measured position at the last sample, m.
+        pub previous_position_m,
     }
 }
 
@@ -153,9 +149,9 @@ impl<R: Real> Pid<R> {
         }
     }
 
-    /// The force in N for a sample.
+    /// The force in N at a sample.
     #[inline(always)]
-    pub fn step(&self, state: &mut PidState<R>, measured: &Measurement<R>) -> R {
+    pub fn force(&self, state: &mut PidState<R>, measured: &Measurement<R>) -> R {
         let filtered = self.sense(state, measured);
         self.output(&self.gains, &filtered, state, measured)
     }
@@ -262,6 +258,25 @@ impl<R: Real> Pid<R> {
     }
 }
 
+impl<R: Real> Control<R> for Pid<R> {
+    type State = PidState<R>;
+
+    #[inline(always)]
+    fn step(&self, state: &mut PidState<R>, measured: &Measurement<R>) -> Command<R> {
+        Command::force(self.force(state, measured))
+    }
+
+    #[inline(always)]
+    fn commanded_speed(
+        &self,
+        _state: &PidState<R>,
+        setpoint: &Setpoint<R>,
+        _command: &Command<R>,
+    ) -> R {
+        setpoint.rate_m_per_s
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -290,21 +305,17 @@ mod tests {
         }
     }
 
-    fn at_rest() -> PidState<f64> {
-        PidState { integral_n: 0.0, derivative_m_per_s: 0.0, previous_position_m: 0.0 }
-    }
-
     #[test]
     fn one_sample_by_hand() {
         // kp e = 20, ki e T_s = 0.4, kd (dr/dt - v) = 7.5
-        let force = pid(AntiWindup::Off).step(&mut at_rest(), &sample(0.002, 0.0));
+        let force = pid(AntiWindup::Off).force(&mut PidState::at_rest(), &sample(0.002, 0.0));
         assert!((force - 27.9).abs() < 1e-12, "{force}");
     }
 
     #[test]
     fn derivative_of_the_measurement_ignores_the_reference() {
         let controller = Pid { derivative_of: DerivativeOf::Measurement, ..pid(AntiWindup::Off) };
-        let force = controller.step(&mut at_rest(), &sample(0.002, 0.0));
+        let force = controller.force(&mut PidState::at_rest(), &sample(0.002, 0.0));
         assert!((force - (20.4 - 2.5)).abs() < 1e-12, "{force}");
     }
 
@@ -316,9 +327,9 @@ mod tests {
             derivative_filter_s: Maybe::some(5e-3),
             ..pid(AntiWindup::Off)
         };
-        let mut state = at_rest();
+        let mut state = PidState::at_rest();
         for n in 1..100 {
-            controller.step(&mut state, &sample(0.0, 0.3 * 1e-3 * f64::from(n)));
+            controller.force(&mut state, &sample(0.0, 0.3 * 1e-3 * f64::from(n)));
             if n == 1 {
                 assert!((state.derivative_m_per_s + 0.3 / 6.0).abs() < 1e-12); // T_s/(tau+T_s)
             }
@@ -329,9 +340,9 @@ mod tests {
     #[test]
     fn without_anti_windup_the_integral_grows_and_with_it_it_does_not() {
         let wound = |anti_windup| {
-            let (controller, mut state) = (pid(anti_windup), at_rest());
+            let (controller, mut state) = (pid(anti_windup), PidState::at_rest());
             for _ in 0..1000 {
-                controller.step(&mut state, &sample(0.05, 0.0));
+                controller.force(&mut state, &sample(0.05, 0.0));
             }
             state.integral_n
         };
@@ -344,21 +355,21 @@ mod tests {
     #[test]
     fn leaving_a_limit_is_prompt_with_anti_windup() {
         let controller = pid(AntiWindup::Conditional);
-        let mut state = at_rest();
+        let mut state = PidState::at_rest();
         for _ in 0..1000 {
-            assert_eq!(controller.step(&mut state, &sample(0.05, 0.0)), 100.0);
+            assert_eq!(controller.force(&mut state, &sample(0.05, 0.0)), 100.0);
         }
-        assert!(controller.step(&mut state, &sample(0.0, 0.001)) < 1.0);
+        assert!(controller.force(&mut state, &sample(0.0, 0.001)) < 1.0);
     }
 
     #[test]
     fn taking_over_new_gains_does_not_bump() {
         let controller = pid(AntiWindup::Off);
         let new = Gains { kp_n_per_m: 3e3, ki_n_per_m_s: 0.0, kd_n_s_per_m: 400.0 };
-        let (mut state, measured) = (at_rest(), sample(0.002, 0.0));
-        let before = controller.step(&mut state, &measured);
+        let (mut state, measured) = (PidState::at_rest(), sample(0.002, 0.0));
+        let before = controller.force(&mut state, &measured);
         let next = Pid { gains: new, derivative_filter_s: Maybe::some(5e-3), ..controller };
-        let mut sensed = at_rest();
+        let mut sensed = PidState::at_rest();
         let filtered = next.sense(&mut sensed, &measured);
         assert!(sensed.derivative_m_per_s < 0.5 * state.derivative_m_per_s);
         for integral_n in [

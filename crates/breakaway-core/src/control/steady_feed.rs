@@ -1,8 +1,10 @@
 //! The stiff way: move, whatever it takes.
 
+use super::{Control, Measurement};
 use crate::actuator::Command;
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::states::states;
 
 parameters! {
     /// A slow approach for a set time, then a constant speed of the feed, without any sensing.
@@ -24,20 +26,31 @@ parameters! {
     }
 }
 
+states! {
+    /// What moves in a steady feed.
+    pub struct SteadyFeedState {
+        /// t in s: time since the start.
+        pub elapsed_s,
+    }
+}
+
 impl<R: Real> SteadyFeed<R> {
-    /// The speed in m/s at a sample; `elapsed_s` is what moves.
+    /// The speed in m/s at a sample.
     #[inline(always)]
-    pub fn speed(&self, elapsed_s: &mut R, period_s: R) -> R {
+    pub(super) fn speed(&self, state: &mut SteadyFeedState<R>, period_s: R) -> R {
         R::section("feed: w = w_a while t < t_a, then w_0");
-        let approaching = (*elapsed_s).lt(self.approach_s);
-        *elapsed_s = *elapsed_s + period_s;
+        let approaching = state.elapsed_s.lt(self.approach_s);
+        state.elapsed_s = state.elapsed_s + period_s;
         R::select(approaching, self.approach_m_per_s, self.speed_m_per_s).named("feed_m_per_s")
     }
+}
 
-    /// The command at a sample.
+impl<R: Real> Control<R> for SteadyFeed<R> {
+    type State = SteadyFeedState<R>;
+
     #[inline(always)]
-    pub fn step(&self, elapsed_s: &mut R, period_s: R) -> Command<R> {
-        let feed_m_per_s = self.speed(elapsed_s, period_s);
+    fn step(&self, state: &mut SteadyFeedState<R>, measured: &Measurement<R>) -> Command<R> {
+        let feed_m_per_s = self.speed(state, measured.period_s);
         Command { force_n: R::zero(), feed_m_per_s, stack_share: R::zero() }
     }
 }

@@ -1,10 +1,11 @@
 //! Impacts that time themselves by what the part does.
 
-use super::Measurement;
+use super::{Control, Measurement};
 use crate::actuator::Command;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::states::states;
 
 /// Positions that the slopes are taken over.
 const WINDOW: usize = 8;
@@ -139,7 +140,7 @@ pub struct TimedImpactsState<R> {
     pub window_m: [R; WINDOW],
 }
 
-parameters! {
+states! {
     /// The numbers that move in timed impacts.
     pub struct ImpactNumbers {
         /// 1 while coasting.
@@ -200,41 +201,12 @@ parameters! {
 impl<R: Real> TimedImpactsState<R> {
     /// Before the first sample.
     pub fn at_rest() -> Self {
-        let zero = R::zero();
-        let numbers = ImpactNumbers {
-            coasting: zero,
-            seen_to_slip: zero,
-            free: zero,
-            force_n: zero,
-            modeled_n: zero,
-            peak_n: zero,
-            ceiling_n: zero,
-            first_slip_n: zero,
-            dwell_s: zero,
-            dwelt_s: zero,
-            put_off_s: zero,
-            start_m: zero,
-            furthest_m: zero,
-            fastest_m_per_s: zero,
-            slip_s: zero,
-            lead_s: zero,
-            step_m: zero,
-            recoil_m: zero,
-            cycle_s: zero,
-            in_cycle_s: zero,
-            coasted_s: zero,
-            elapsed_s: zero,
-            mean_count: zero,
-            mean_sum_m: zero,
-            mean_m: zero,
-            seen: zero,
-        };
-        Self { numbers, window_m: [zero; WINDOW] }
+        Self { numbers: ImpactNumbers::at_rest(), window_m: [R::zero(); WINDOW] }
     }
 
-    /// `yes` where `mask` holds, `no` elsewhere.
+    /// Every number of `yes` where `mask` holds, of `no` elsewhere.
     #[inline(always)]
-    pub(super) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+    pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         let mut window_m = yes.window_m;
         for (chosen, &other) in window_m.iter_mut().zip(&no.window_m) {
             *chosen = R::select(mask, *chosen, other);
@@ -263,10 +235,11 @@ const FIRST_CYCLE_S: f64 = 0.01;
 /// Share of a new value in the running means of recoil and cycle.
 const NEW_SHARE: f64 = 0.2;
 
-impl<R: Real> TimedImpacts<R> {
-    /// The command at a sample.
+impl<R: Real> Control<R> for TimedImpacts<R> {
+    type State = TimedImpactsState<R>;
+
     #[inline(always)]
-    pub fn step(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) -> Command<R> {
+    fn step(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) -> Command<R> {
         self.look(state, measured);
         R::section("impacts: cut when (x - x_0) + kappa v >= Delta, or fruitless at the ceiling");
         let seen = self.velocity(&state.window_m, measured.period_s);
@@ -290,7 +263,9 @@ impl<R: Real> TimedImpacts<R> {
         n.force_n = R::select(off, R::zero(), n.force_n);
         Command::force(n.force_n)
     }
+}
 
+impl<R: Real> TimedImpacts<R> {
     /// Takes a sample in: window, clocks, the modeled force.
     #[inline(always)]
     fn look(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) {

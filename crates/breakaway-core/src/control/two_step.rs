@@ -1,12 +1,15 @@
 //! The paper's supervisor: any breakaway controller, then any vibration controller.
 
+use super::controller::controllers;
 use super::{
-    ControllerState, ForceRamp, Measurement, Pid, PidState, TimedImpacts, TimedImpactsState,
-    VibratingPid, VibrationState,
+    Control, FmVibrationState, ForceRamp, ForceRampState, Measurement, Pid, PidState, TimedImpacts,
+    TimedImpactsState, VibratingPid, VibratingPidState,
 };
+use crate::actuator::Command;
 use crate::name::{Name, within};
 use crate::real::Real;
 use crate::reference::Setpoint;
+use crate::states::states;
 
 /// One controller until the joint breaks loose, then another that vibrates.
 ///
@@ -43,26 +46,41 @@ pub struct TwoStep<R> {
     pub breakaway_travel_m: R,
 }
 
-/// A controller that breaks the joint loose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
-pub enum FirstStep<R> {
+controllers! {
+    /// A controller that breaks the joint loose.
+    pub enum FirstStep;
+    /// What moves in step 1.
+    pub struct FirstStepState;
+
     /// Step 1 of the paper: a continuous force.
-    Pid(Pid<R>),
+    Pid(Pid) with pid: PidState,
     /// A force that grows until the joint is loose.
-    ForceRamp(ForceRamp<R>),
+    ForceRamp(ForceRamp) with force_ramp: ForceRampState,
 }
 
-/// A controller that vibrates a loose part out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "snake_case"))]
-pub enum SecondStep<R> {
+controllers! {
+    /// A controller that vibrates a loose part out.
+    pub enum SecondStep;
+    /// What moves in step 2.
+    pub struct SecondStepState;
+
     /// Step 2 of the paper: a PID whose output is the amplitude of pulses.
-    FmVibration(VibratingPid<R>),
+    FmVibration(VibratingPid) with fm_vibration: VibratingPidState,
     /// Impacts that time themselves.
-    TimedImpacts(TimedImpacts<R>),
+    TimedImpacts(TimedImpacts) with timed_impacts: TimedImpactsState,
+}
+
+states! {
+    /// What moves in two steps. Step 1 stands still once step 2 moves; before, step 2 only senses.
+    pub struct TwoStepState {
+        /// 1 once it vibrates, else 0.
+        pub vibrating,
+    } with {
+        /// Step 1.
+        pub breakaway: FirstStepState,
+        /// Step 2.
+        pub vibration: SecondStepState,
+    }
 }
 
 impl<R: Real> TwoStep<R> {
@@ -74,109 +92,80 @@ impl<R: Real> TwoStep<R> {
             breakaway_travel_m: f(Name::of("breakaway_travel_m"), self.breakaway_travel_m),
         }
     }
+}
 
-    /// The force in N at a sample. Both steps are computed; what the other one moved is dropped.
+impl<R: Real> Control<R> for TwoStep<R> {
+    type State = TwoStepState<R>;
+
+    /// Both steps are computed; what the other one moved is dropped.
     #[inline(always)]
-    pub(super) fn step(&self, state: &mut ControllerState<R>, measured: &Measurement<R>) -> R {
+    fn step(&self, state: &mut TwoStepState<R>, measured: &Measurement<R>) -> Command<R> {
         R::section("supervisor: loose once x > breakaway travel");
-        let before = state.vibration;
-        let was_vibrating = before.vibrating.is_set();
+        let was_vibrating = state.vibrating.is_set();
         let vibrating = was_vibrating | self.breakaway_travel_m.lt(measured.position_m);
-
-        let (mut one, mut two) = (before, before);
-        let push = self.breakaway.step(&mut one, measured);
-        let hit = match &self.vibration {
-            SecondStep::FmVibration(c) => {
-                let mut pid = before.vibration_pid();
-                let filtered = c.pid.sense(&mut pid, measured);
-                one.set_sensed(&pid);
-                let taken_over = self.breakaway.hand_over(&before, &one, &c.pid, &pid, measured);
-                pid.integral_n = R::select(was_vibrating, before.integral_n, taken_over);
-                let amplitude = c.pid.output(&c.pid.gains, &filtered, &mut pid, measured);
-                two.integral_n = pid.integral_n;
-                two.set_sensed(&pid);
-                let mut pulses = before.pulses();
-                let hit = c.vibration.step(&mut pulses, amplitude, measured);
-                two.set_pulses(pulses);
-                hit
+        let mut breakaway = state.breakaway;
+        let push_n = self.breakaway.step(&mut breakaway, measured).force_n;
+        let hit_n = match &self.vibration {
+            SecondStep::FmVibration(second) => {
+                let moving = &mut state.vibration.fm_vibration;
+                let filtered = second.pid.sense(&mut moving.pid, measured);
+                let steps = [&state.breakaway, &breakaway];
+                let taken_over_n =
+                    self.breakaway.hand_over(steps, &second.pid, &moving.pid, measured);
+                let integral_n = R::select(was_vibrating, moving.pid.integral_n, taken_over_n);
+                moving.pid.integral_n = integral_n;
+                let amplitude_n =
+                    second.pid.output(&second.pid.gains, &filtered, &mut moving.pid, measured);
+                let mut pulses = moving.vibration;
+                let hit_n = second.vibration.force(&mut pulses, amplitude_n, measured);
+                moving.vibration = FmVibrationState::select(vibrating, &pulses, &moving.vibration);
+                hit_n
             }
-            SecondStep::TimedImpacts(c) => {
-                let mut moved = state.impacts;
-                let hit = c.step(&mut moved, measured).force_n;
-                state.impacts = TimedImpactsState::select(vibrating, &moved, &state.impacts);
-                hit
+            SecondStep::TimedImpacts(second) => {
+                let moving = &mut state.vibration.timed_impacts;
+                let mut moved = *moving;
+                let hit_n = second.step(&mut moved, measured).force_n;
+                *moving = TimedImpactsState::select(vibrating, &moved, moving);
+                hit_n
             }
         };
         R::section("supervisor: what moves is that of the step it is in");
-        state.vibration = VibrationState::select(vibrating, &two, &one);
-        state.vibration.vibrating = R::flag(vibrating);
-        R::select(vibrating, hit, push).named("two_step_n")
+        state.breakaway = FirstStepState::select(vibrating, &state.breakaway, &breakaway);
+        state.vibrating = R::flag(vibrating);
+        Command::force(R::select(vibrating, hit_n, push_n).named("two_step_n"))
     }
 
-    /// The speed in m/s that the part is meant to have: that of the step it is in.
+    /// That of the step it is in.
     #[inline(always)]
-    pub(super) fn commanded_speed(&self, state: &VibrationState<R>, setpoint: &Setpoint<R>) -> R {
-        let one = match self.breakaway {
-            FirstStep::Pid(_) => setpoint.rate_m_per_s,
-            FirstStep::ForceRamp(_) => R::zero(),
-        };
-        let two = match self.vibration {
-            SecondStep::FmVibration(_) => setpoint.rate_m_per_s,
-            SecondStep::TimedImpacts(_) => R::zero(),
-        };
+    fn commanded_speed(
+        &self,
+        state: &TwoStepState<R>,
+        setpoint: &Setpoint<R>,
+        command: &Command<R>,
+    ) -> R {
+        let one = self.breakaway.commanded_speed(&state.breakaway, setpoint, command);
+        let two = self.vibration.commanded_speed(&state.vibration, setpoint, command);
         R::select(state.vibrating.is_set(), two, one)
     }
 }
 
 impl<R: Real> FirstStep<R> {
-    /// Applies `f` to every number.
-    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FirstStep<S> {
-        match self {
-            Self::Pid(pid) => FirstStep::Pid(pid.map(f)),
-            Self::ForceRamp(c) => FirstStep::ForceRamp(c.map(f)),
-        }
-    }
-
-    #[inline(always)]
-    fn step(&self, state: &mut VibrationState<R>, measured: &Measurement<R>) -> R {
-        match self {
-            Self::Pid(pid) => {
-                let mut moved = state.pid();
-                let force = pid.step(&mut moved, measured);
-                state.set_pid(moved);
-                force
-            }
-            Self::ForceRamp(c) => c.step(&mut state.ramp_n, measured).force_n,
-        }
-    }
-
     /// The integral in N with which `next` goes on, from what moves in this step before and after
     /// the sample. Both have sensed it.
     #[inline(always)]
     fn hand_over(
         &self,
-        before: &VibrationState<R>,
-        after: &VibrationState<R>,
+        [before, after]: [&FirstStepState<R>; 2],
         next: &Pid<R>,
         sensed: &PidState<R>,
         measured: &Measurement<R>,
     ) -> R {
         match self {
             Self::Pid(pid) => {
-                let now = PidState { integral_n: before.integral_n, ..after.pid() };
+                let now = PidState { integral_n: before.pid.integral_n, ..after.pid };
                 next.integral_after(&pid.gains, &now, sensed, measured)
             }
-            Self::ForceRamp(_) => next.integral_from(before.ramp_n, sensed, measured),
-        }
-    }
-}
-
-impl<R: Real> SecondStep<R> {
-    /// Applies `f` to every number.
-    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> SecondStep<S> {
-        match self {
-            Self::FmVibration(c) => SecondStep::FmVibration(c.map(f)),
-            Self::TimedImpacts(c) => SecondStep::TimedImpacts(c.map(f)),
+            Self::ForceRamp(_) => next.integral_from(before.force_ramp.force_n, sensed, measured),
         }
     }
 }

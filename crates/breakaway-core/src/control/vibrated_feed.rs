@@ -1,11 +1,12 @@
 //! A steady feed helped by a vibrating stack.
 
 use super::fm_vibration::half_sine;
-use super::{Measurement, SteadyFeed};
+use super::{Control, Measurement, SteadyFeed, SteadyFeedState};
 use crate::actuator::Command;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::states::states;
 
 /// A constant feed, on which a piezo stack superimposes pulses in proportion to the measured force.
 ///
@@ -44,25 +45,25 @@ parameters! {
     }
 }
 
-parameters! {
+states! {
     /// What moves in a vibrated feed.
-    pub struct VibratedFeedState {
-        /// Time since the start, s.
-        pub elapsed_s,
+    pub struct VibratedFeedState with {
+        /// The feed.
+        pub feed: SteadyFeedState,
+        /// The pulses of the stack.
+        pub pulses: StackPulsesState,
+    }
+}
+
+states! {
+    /// What moves in the pulses of a stack.
+    pub struct StackPulsesState {
         /// F̄ in N.
         pub mean_n,
         /// Share of the stroke of this pulse.
         pub amplitude,
         /// Phase in cycles, 0 to 1.
         pub phase_cycles,
-    }
-}
-
-impl<R: Real> VibratedFeedState<R> {
-    /// Before the first sample.
-    pub fn at_rest() -> Self {
-        let zero = R::zero();
-        Self { elapsed_s: zero, mean_n: zero, amplitude: zero, phase_cycles: zero }
     }
 }
 
@@ -74,26 +75,38 @@ impl<R: Real> VibratedFeed<R> {
             pulses: within!("pulses", self.pulses, f),
         }
     }
+}
 
-    /// The command at a sample.
+impl<R: Real> StackPulses<R> {
+    /// The share of the stroke at a sample.
     #[inline(always)]
-    pub fn step(&self, state: &mut VibratedFeedState<R>, measured: &Measurement<R>) -> Command<R> {
+    fn share(&self, state: &mut StackPulsesState<R>, measured: &Measurement<R>) -> R {
         let (zero, one, period) = (R::zero(), R::one(), measured.period_s);
-        let p = &self.pulses;
         R::section("stack pulses: share = min(alpha F_mean / F_stack, 1) sin^2(pi u)");
-        let new = (period / (p.force_filter_s + period)).named("new_share");
+        let new = (period / (self.force_filter_s + period)).named("new_share");
         let changed_n = measured.force_n - state.mean_n;
         state.mean_n = new.mul_add(changed_n, state.mean_n).named("mean_n");
-        let duty = (p.frequency_hz * p.pulse_width_s).named("duty");
+        let duty = (self.frequency_hz * self.pulse_width_s).named("duty");
         let u = (state.phase_cycles / duty).named("progress");
         let shape = half_sine(u.min(one));
         let share = (state.amplitude * shape * shape).named("stack_share");
-        let next = p.frequency_hz.mul_add(period, state.phase_cycles).named("next_cycles");
+        let next = self.frequency_hz.mul_add(period, state.phase_cycles).named("next_cycles");
         let starts = one.le(next);
-        let wanted = (p.amplitude_ratio * state.mean_n / p.stack_force_n).named("wanted_share");
+        let wanted =
+            (self.amplitude_ratio * state.mean_n / self.stack_force_n).named("wanted_share");
         state.amplitude = R::select(starts, wanted.clamp(zero, one), state.amplitude);
         state.phase_cycles = next - R::flag(starts);
-        let feed_m_per_s = self.feed.speed(&mut state.elapsed_s, period);
-        Command { force_n: zero, feed_m_per_s, stack_share: share }
+        share
+    }
+}
+
+impl<R: Real> Control<R> for VibratedFeed<R> {
+    type State = VibratedFeedState<R>;
+
+    #[inline(always)]
+    fn step(&self, state: &mut VibratedFeedState<R>, measured: &Measurement<R>) -> Command<R> {
+        let stack_share = self.pulses.share(&mut state.pulses, measured);
+        let feed_m_per_s = self.feed.speed(&mut state.feed, measured.period_s);
+        Command { force_n: R::zero(), feed_m_per_s, stack_share }
     }
 }

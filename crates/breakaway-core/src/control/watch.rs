@@ -3,6 +3,7 @@
 use super::Measurement;
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::states::states;
 
 parameters! {
     /// Stops for good at a measurement that can not be true: no force, no feed, stack relaxed.
@@ -26,7 +27,7 @@ parameters! {
     }
 }
 
-parameters! {
+states! {
     /// What the watch remembers.
     pub struct WatchState {
         /// Why it stopped: the number of the reason, 0 while it has none.
@@ -37,14 +38,6 @@ parameters! {
         pub unchanged_s,
         /// 1 once there was a sample.
         pub began,
-    }
-}
-
-impl<R: Real> WatchState<R> {
-    /// Before the first sample.
-    pub fn at_rest() -> Self {
-        let zero = R::zero();
-        Self { reason: zero, last_m: zero, unchanged_s: zero, began: zero }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::graph::{Bits, Graph, Node, NodeId};
-use crate::program::Slot;
+use crate::routine::Slot;
 
 /// A path as one C identifier: dots become underscores.
 ///
@@ -62,7 +62,7 @@ impl ParameterNames {
 /// # Example
 /// ```
 /// use breakaway_export::c::names::state;
-/// assert_eq!(state("controller.vibration.integral_n"), "vibration_integral_n");
+/// assert_eq!(state("controller.pid.integral_n"), "pid_integral_n");
 /// assert_eq!(state("plant.position_m"), "plant_position_m");
 /// ```
 #[must_use]

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::c::names::{ParameterNames, Taken, called, joined, state};
 use crate::c::{Precision, Used};
 use crate::graph::{Graph, Node, NodeId};
-use crate::program::Slot;
+use crate::routine::Slot;
 
 /// The longest expression that is written inline.
 const INLINE: usize = 66;

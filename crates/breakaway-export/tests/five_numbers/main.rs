@@ -22,8 +22,12 @@ fn the_cases_break_loose_slide_and_leave() {
     for case in cases::all() {
         let mut run = scalar(&case, 0);
         (0..SAMPLES).for_each(|n| run.step(draw(0, n)));
-        assert!(run.metrics.bounded == 1.0 && run.metrics.breakaway_s.is_finite(), "{}", case.name);
-        (cases, free) = (cases + 1, free + usize::from(run.metrics.release_s.is_finite()));
+        assert!(
+            run.metrics.bounded == 1.0 && run.metrics.time_to_breakaway_s.is_finite(),
+            "{}",
+            case.name
+        );
+        (cases, free) = (cases + 1, free + usize::from(run.metrics.time_to_release_s.is_finite()));
     }
     assert_eq!(cases, 2 * 18 * 4 * 2 * 2 * 2 + cases::more_count());
     assert!(free > cases * 98 / 100, "{free} of {cases} parts leave their joint to stay free");
@@ -203,7 +207,7 @@ fn the_derivative_of_a_dual_is_the_slope_of_the_scalar_run() {
             run.step(Draws { disturbance: 0.5, ..Draws::none() });
             assert!(run.state.plant.velocity_m_per_s >= 0.0, "not smooth");
         }
-        assert!(run.metrics.breakaway_s.is_finite(), "not sliding");
+        assert!(run.metrics.time_to_breakaway_s.is_finite(), "not sliding");
         run.moving()
     };
     let index = |name: &str| PARAMETERS.iter().position(|&parameter| parameter == name);

@@ -141,11 +141,8 @@ def core_columns(
     varied = dict(_arrays(whole, ""))
     for path, column in varied.items():
         _put(shared, path, float(column[0]))
-    places = []
-    for path, column in varied.items():
-        probe = copy.deepcopy(shared)
-        _put(probe, path, float("nan"))
-        places.append((_core.number_place(probe), column))
+    found = _core.number_places(shared)
+    places = [(found[_named_in_core(path)], column) for path, column in varied.items()]
     return shared, places
 
 
@@ -162,6 +159,11 @@ def _arrays(values: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Array
             yield from _arrays(value, f"{prefix}{name}.")
         elif isinstance(value, np.ndarray):
             yield f"{prefix}{name}", value
+
+
+def _named_in_core(path: str) -> str:
+    """Leave out the tables that hold a law's numbers: names of the core do."""
+    return ".".join(name for name in path.split(".") if name not in ("friction", "law"))
 
 
 def _put(values: dict[str, Any], path: str, value: float) -> None:
