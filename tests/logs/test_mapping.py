@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from breakaway.errors import LogError
 from breakaway.measure.logs import read_log
 from breakaway.measure.logs.names import read_header
-from breakaway.measure.logs.units import si_symbol, stated, unit_of
+from breakaway.measure.logs.units import si_symbol, stated, unit_named
 
 
 def write(folder: Path, header: str, scale: float = 1.0) -> Path:
@@ -47,12 +47,12 @@ def write(folder: Path, header: str, scale: float = 1.0) -> Path:
     ],
 )
 def test_units(symbol: str, channel: str, value: float) -> None:
-    assert unit_of(symbol, channel).factor == value
-    assert unit_of(si_symbol(channel), channel).factor == 1.0
+    assert unit_named(symbol, channel).factor == value
+    assert unit_named(si_symbol(channel), channel).factor == 1.0
 
 
 def test_kelvin_has_an_offset() -> None:
-    unit = unit_of("K", "temperature_degc")
+    unit = unit_named("K", "temperature_degc")
     assert unit.factor * 300.0 + unit.offset == pytest.approx(26.85)
 
 
@@ -219,7 +219,7 @@ def test_refuses(tmp_path: Path, mapping: dict[str, Any], words: str) -> None:
 def test_the_unit_of_the_file_does_not_matter(unit: str, offset: float) -> None:
     import tempfile
 
-    factor = unit_of(unit, "position_m").factor
+    factor = unit_named(unit, "position_m").factor
     t_s = np.arange(20) / 100.0
     position_m = offset + np.sin(t_s)
     with tempfile.TemporaryDirectory() as folder:

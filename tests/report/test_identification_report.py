@@ -25,7 +25,7 @@ from breakaway.measure.identification.uncertainty import Posterior
 from breakaway.measure.identification.verdicts import stiction_peak
 from breakaway.measure.logs import read_log
 from breakaway.measure.logs.log import Log
-from breakaway.show.plots.identification import words_and_unit
+from breakaway.model.units import unit_of, words_of
 from breakaway.show.report.identification import (
     identification_report,
     save_identification_report,
@@ -122,9 +122,8 @@ class Page(HTMLParser):
 def test_every_parameter_has_its_row(found, page):
     rows = Page(page).rows
     for one in found.estimates:
-        words, unit = words_and_unit(one.name)
-        row = next(row for row in rows if row.strip().startswith(words))
-        assert unit in row
+        row = next(row for row in rows if row.strip().startswith(words_of(one.name)))
+        assert unit_of(one.name).shown in row
         assert (" yes " if one.identifiable else " no ") in row
     coulomb = next(row for row in rows if row.strip().startswith("Coulomb "))
     estimate = found["coulomb_n"]

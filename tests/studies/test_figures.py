@@ -107,7 +107,7 @@ def test_sensitivity_has_bars_for_each_input(tmp_path):
         for name in ("joint.stiction_n", "disturbance draws")
     ]
     figure = drawn(plot_sensitivity("s", rows), tmp_path)
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["peak force", "iae"]
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["peak force", "IAE"]
     assert len(figure.axes[0].patches) == 4
 
 

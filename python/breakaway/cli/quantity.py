@@ -4,36 +4,10 @@ from __future__ import annotations
 
 from math import floor, isfinite, log10
 
+from breakaway.model.units import unit_of, words_of
+
 NOT_HAPPENED = "none"
 """How a value reads that is not a number: what it measures did not happen."""
-
-# Suffix of a name -> unit, and whether prefixes are usual with it; the first match counts.
-_UNITS = (
-    ("_m_per_s2", "m/s²", True),
-    ("_n_s_per_m", "N s/m", True),
-    ("_n_per_m_s", "N/(m s)", True),
-    ("_n_per_m", "N/m", True),
-    ("_rad_per_s", "rad/s", False),
-    ("_m_per_s", "m/s", True),
-    ("_per_s", "1/s", False),
-    ("_m2_s", "m² s", False),
-    ("_m_s2", "m s²", True),
-    ("_m_s", "m s", True),
-    ("_n_s", "N s", True),
-    ("_percent", "%", False),
-    ("_kg", "kg", False),
-    ("_hz", "Hz", True),
-    ("_n", "N", True),
-    ("_j", "J", True),
-    ("_s", "s", True),
-    ("_a", "A", True),
-    ("_w", "W", True),
-    ("_f", "F", True),
-    ("_v", "V", True),
-    ("_m", "m", True),
-)
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-_SPELLING = {"iae": "IAE", "ise": "ISE", "itae": "ITAE", "rms": "RMS", "coulomb": "Coulomb"}
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -45,8 +19,7 @@ def split_unit(name: str) -> tuple[str, str]:
     (('RMS force', 'N'), ('stiffness', 'N/m'), ('impacts', ''))
 
     """
-    stem, unit, _ = _matched(name)
-    return " ".join(_SPELLING.get(word, word) for word in stem.split("_")), unit
+    return words_of(name), unit_of(name).shown
 
 
 def show_value(name: str, value: float | None) -> tuple[str, str]:
@@ -64,16 +37,12 @@ def show_value(name: str, value: float | None) -> tuple[str, str]:
     """
     if value is None or value != value:
         return NOT_HAPPENED, ""
-    _, unit, prefixed = _matched(name)
-    if not prefixed or value == 0.0 or not isfinite(value):
-        return f"{value:.5g}", unit
+    unit = unit_of(name)
     rounded = float(f"{value:.5g}")  # so that 999.999 counts as 1 k
-    power = 3 * floor(log10(abs(rounded)) / 3)
-    if unit in ("m", "s", "m s", "m s²", "m/s", "m/s²"):
-        power = min(power, 0)  # nobody reads kiloseconds
-    if power not in _PREFIXES:
-        return f"{value:.5g}", unit
-    return f"{rounded / 10.0**power:.5g}", _PREFIXES[power] + unit
+    if not 1e-9 <= abs(rounded) < 1e12:  # zero, or beyond all prefixes
+        return f"{value:.5g}", unit.shown
+    power = unit.power_of(abs(rounded))
+    return f"{rounded / 10.0**power:.5g}", unit.prefixed(power)
 
 
 def show(name: str, value: float | None) -> str:
@@ -120,13 +89,6 @@ def show_uncertain(value: float, error: float) -> tuple[str, str]:
         return f"{value:.6g}", f"{error:.2g}"
     shown = max(places, 0)
     return f"{round(value, places):.{shown}f}", f"{round(error, places):.{shown}f}"
-
-
-def _matched(name: str) -> tuple[str, str, bool]:
-    for suffix, unit, prefixed in _UNITS:
-        if name.endswith(suffix):
-            return name.removesuffix(suffix), unit, prefixed
-    return name, "", False
 
 
 def memory_bytes(memory_gib: float | None) -> float | None:

@@ -23,8 +23,8 @@ from breakaway.export.fmu_build import build
 from breakaway.export.interface import Variable, What
 from breakaway.export.recording import Recording, record
 from breakaway.export.templating import fill
-from breakaway.export.units import BASE_UNITS
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.units import unit_with
 from breakaway.run.resolution import resolve
 
 Fmi = Literal["2", "3"]
@@ -204,7 +204,7 @@ def _context(recording: Recording, fmi: Fmi) -> dict[str, Any]:
         "period_name": _PERIOD,
         "period_s": repr(scenario.timing.control_period_s),
         "stop_s": repr(scenario.timing.duration_s),
-        "units": {unit: BASE_UNITS[unit] for unit in sorted(units)},
+        "units": {_fmi_unit(unit): unit_with(unit).base for unit in sorted(units)},
         "variables": _variables(groups, prefix, fmi),
         "sources": ["fmu.c", f"{prefix}.c"],
         "absent": absent(fmi),
@@ -273,12 +273,17 @@ def _told(one: Variable, name: str, group: str, reference: int, fmi: Fmi) -> _To
         variability="fixed" if one.name == _PERIOD else variability,
         initial=initial,
         description=one.description + _bounds_told(one),
-        unit="" if one.unit == "1" else one.unit,
+        unit="" if one.unit == "1" else _fmi_unit(one.unit),
         minimum=minimum,
         maximum=maximum,
         start=None if causality == "output" else start,
         whole=whole,
     )
+
+
+def _fmi_unit(symbol: str) -> str:
+    """A unit as Modelica spells it: ``m/s2``."""
+    return symbol.replace("^", "")
 
 
 def _number(value: float) -> str:

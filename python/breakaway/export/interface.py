@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
-from breakaway.export.units import unit_of
 from breakaway.model.scenario.model import properties
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.units import unit_of
 
 What = Literal["controller", "plant", "loop"]
 """What of a scenario is exported."""
@@ -124,7 +124,7 @@ def flow(what: What, direction: str, names: list[str]) -> list[Variable]:
     told = FLOW.get(f"{what}.{direction}", {})
     variables = []
     for name in names:
-        unit = unit_of(name)
+        unit = unit_of(name).symbol
         limit = LIMITS[unit]
         bounds = Range(-limit, limit) if direction == "input" else Range()
         variables.append(Variable(name, name, unit, told[name], range=bounds))
@@ -141,13 +141,14 @@ def parameter(scenario: Scenario, path: str, name: str, value: float, literal: s
     described = type(owner).model_fields[last].description or ""
     description = " ".join(described.split())
     bounds = _range(properties(type(owner))[last], optional=isinf(value))
-    return Variable(name, path, unit_of(path), description, value, literal, bounds)
+    return Variable(name, path, unit_of(path).symbol, description, value, literal, bounds)
 
 
 def state(path: str, name: str, value: float, literal: str) -> Variable:
     """Describe a state by its path in the state of the core."""
     block, _, last = path.partition(".")
-    return Variable(name, path, unit_of(path), f"State of the {block}: {last}.", value, literal)
+    described = f"State of the {block}: {last}."
+    return Variable(name, path, unit_of(path).symbol, described, value, literal)
 
 
 def _in_scenario(path: str) -> str:

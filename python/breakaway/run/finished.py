@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from breakaway.base.equality import ByValue
 from breakaway.errors import ScenarioError
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.units import unit_of
 
 if TYPE_CHECKING:
     import xarray
@@ -151,7 +152,7 @@ class Run(ByValue):
         if not self.trace:
             raise ScenarioError("trace.every_samples: is 0, so there is no trace; give 1 or more")
         data = {
-            name: ("t_s", values, {"units": TRACE_UNITS[name]})
+            name: ("t_s", values, {"units": unit_of(name).symbol})
             for name, values in self.trace.items()
             if name != "t_s"
         }
@@ -169,18 +170,3 @@ class Run(ByValue):
         from breakaway.show.plots.run import plot_run
 
         return plot_run(self)
-
-
-TRACE_UNITS = {
-    "t_s": "s",
-    "reference_m": "m",
-    "position_m": "m",
-    "velocity_m_per_s": "m/s",
-    "bristle_m": "m",
-    "applied_force_n": "N",
-    "joint_force_n": "N",
-    "feed_m": "m",
-    "tool_m": "m",
-    "tip_m": "m",
-}
-"""Column of a trace -> its unit."""

@@ -13,7 +13,8 @@ from breakaway._core import __version__
 from breakaway.base.output import output_folder, remove_inside
 from breakaway.base.ownership import RUN
 from breakaway.model.scenario.files import scenario_toml
-from breakaway.run.finished import TRACE_UNITS, Run
+from breakaway.model.units import unit_of
+from breakaway.run.finished import Run
 
 TRACE_FILES = ("trace.parquet", "trace.csv", "figure.png", "figure.svg")
 """Files of a run that has a trace."""
@@ -133,7 +134,7 @@ def _rerun_toml(run: Run) -> str:
 def _write_trace(run: Run, folder: Path) -> None:
     arrow: Any = import_module("pyarrow")  # has no type stubs
     fields = [
-        arrow.field(name, arrow.float64(), nullable=False, metadata={"unit": TRACE_UNITS[name]})
+        arrow.field(name, arrow.float64(), nullable=False, metadata={"unit": unit_of(name).symbol})
         for name in run.trace
     ]
     about = {"scenario": run.scenario.name, "breakaway_version": __version__}

@@ -15,7 +15,7 @@ from breakaway.ask.studies.part_files import as_bytes, found, part_name, remove_
 from breakaway.ask.studies.pieces import Pieces
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import QUANTITIES, Law
-from breakaway.run.batch.batch import unit_of
+from breakaway.model.units import unit_of
 from breakaway.run.trials import TRIAL_METRICS, Trial
 
 
@@ -51,7 +51,7 @@ def trial_schema() -> Any:  # noqa: ANN401 - pyarrow has no type stubs
     types: dict[str, Any] = {"law": texts, "method": texts, "run_index": arrow.uint64()}
     types |= dict.fromkeys([*QUANTITIES, *TRIAL_METRICS], arrow.float64())
     return arrow.schema(
-        arrow.field(name, kind, nullable=False, metadata={"unit": unit_of(name)})
+        arrow.field(name, kind, nullable=False, metadata={"unit": unit_of(name).symbol})
         for name, kind in types.items()
     )
 

@@ -7,6 +7,7 @@ from breakaway.design.pole_placement import GainSet, pole_placement
 from breakaway.model.scenario.files import load_scenario
 from breakaway.model.scenario.joint import Lugre
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.units import unit_of
 
 TUNING = {
     "without_vibration": {"settling_time_s": 5e-4, "damping_ratio": 1.0},
@@ -29,7 +30,9 @@ TABLE_2 = {
 """The printed gains, in thousands (the paper's second table, captioned as its first)."""
 
 _NAMES = {"kp": "proportional", "kd": "derivative", "ki": "integral"}
-_UNITS = {"kp": "kN/m", "kd": "kN s/m", "ki": "kN/(m s)"}
+_GAINS = ("kp_n_per_m", "kd_n_s_per_m", "ki_n_per_m_s")
+_UNITS = {name[:2]: unit_of(name).prefixed(3) for name in _GAINS}
+"""In thousands, as the paper prints them."""
 
 
 def designed(scenario: Scenario, control: str) -> GainSet:

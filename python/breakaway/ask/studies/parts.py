@@ -15,7 +15,8 @@ from breakaway.ask.studies.levels import Level
 from breakaway.ask.studies.part_files import as_bytes, part_name
 from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.studies.points import Point
-from breakaway.run.batch.batch import Batch, unit_of
+from breakaway.model.units import unit_of
+from breakaway.run.batch.batch import Batch
 
 LARGE = 1000
 """Fewest runs of a piece whose columns are read one by one."""
@@ -148,7 +149,7 @@ def part_schema(labels: Mapping[str, str], varied: Sequence[str], metrics: Seque
     types |= dict.fromkeys([*varied, *metrics], arrow.float64())
     types["outcome"] = texts
     return arrow.schema(
-        arrow.field(name, kind, nullable=False, metadata={"unit": unit_of(name)})
+        arrow.field(name, kind, nullable=False, metadata={"unit": unit_of(name).symbol})
         for name, kind in types.items()
     )
 

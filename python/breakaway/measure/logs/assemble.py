@@ -13,7 +13,7 @@ from breakaway.measure.logs.log import Log
 from breakaway.measure.logs.mapping import ChannelMapping, Mapping
 from breakaway.measure.logs.names import file_unit, nearest, read_header, read_headers
 from breakaway.measure.logs.raw import RawChannel, RawFile
-from breakaway.measure.logs.units import Unit, si_symbol, stated, unit_of
+from breakaway.measure.logs.units import FileUnit, si_symbol, stated, unit_named
 
 REQUIRED = {"position_m": "mm", "force_n": "N"}
 """What a file without a mapping must state -> the unit that the remedy shows."""
@@ -124,13 +124,13 @@ def _mapped(raw: RawFile, mapping: Mapping) -> list[Pick]:
     return picks
 
 
-def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> Unit:
+def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> FileUnit:
     """Return the unit of a mapped column: of the mapping, else the file, else its name."""
     if keys.unit is not None:
-        return unit_of(keys.unit, channel)
+        return unit_named(keys.unit, channel)
     symbol = column(raw, name).unit
     if symbol:
-        return unit_of(symbol, channel)
+        return unit_named(symbol, channel)
     header = read_header(name)
     if header is not None and header.unit.symbol and stated(header.unit.symbol, channel):
         return header.unit

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from breakaway.base.reading import is_file, table_of, text_of
 from breakaway.errors import LogError, ScenarioError
-from breakaway.measure.logs.units import dimension_of, unit_of
+from breakaway.measure.logs.units import dimension_of, unit_named
 from breakaway.model.scenario.model import Model, Name, Text
 
 AnyModel = TypeVar("AnyModel", bound=Model)
@@ -122,7 +122,7 @@ def _check_unit(name: str, channel: ChannelMapping, where: str) -> None:
     try:
         dimension_of(name)
         if channel.unit is not None and channel.scale is None:
-            unit_of(channel.unit, name)
+            unit_named(channel.unit, name)
     except LogError as error:
         raise LogError(f"{where}: {error}") from None
     if name == "t_s":

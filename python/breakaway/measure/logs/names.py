@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from breakaway.measure.logs.raw import RawFile
-from breakaway.measure.logs.units import Unit, stated
+from breakaway.measure.logs.units import FileUnit, stated
 
 WORDS = {
     "t": "t_s",
@@ -52,7 +52,7 @@ class Stated:
     name: str
     word: str
     channel: str
-    unit: Unit
+    unit: FileUnit
 
 
 def read_headers(raw: RawFile) -> list[Stated]:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from breakaway.base.text import brief
 from breakaway.errors import LogError
+from breakaway.model.units import UNITS, unit_of
 
 
 @dataclass(frozen=True)
-class Unit:
+class FileUnit:
     """A unit of a file: SI value = factor * value + offset."""
 
     symbol: str
@@ -50,27 +51,20 @@ _FACTORS = {
 
 _UNITS = [
     *(
-        Unit(symbol, dimension, factor)
+        FileUnit(symbol, dimension, factor)
         for dimension, units in _FACTORS.items()
         for symbol, factor in units.items()
     ),
-    Unit("degC", "temperature", 1.0),
-    Unit("K", "temperature", 1.0, -273.15),
+    FileUnit("degC", "temperature", 1.0),
+    FileUnit("K", "temperature", 1.0, -273.15),
 ]
 
-SUFFIXES = {
-    "m_per_s2": "acceleration",
-    "m_per_s": "speed",
-    "pa": "pressure",
-    "degc": "temperature",
-    "s": "time",
-    "m": "length",
-    "n": "force",
-    "v": "voltage",
-    "a": "current",
-    "1": "ratio",
+_DIMENSIONS = {
+    unit.symbol: unit.dimension for unit in _UNITS if unit.factor == 1.0 and not unit.offset
 }
-"""What a channel's name ends with, after an underscore -> its dimension; the longest counts."""
+"""Unit in which channels are kept -> what it measures."""
+_ENDINGS = [ending for ending, unit in UNITS.items() if unit.symbol in _DIMENSIONS] + ["1"]
+"""What the name of a channel may end with, after an underscore."""
 
 
 def dimension_of(channel: str) -> str:
@@ -87,22 +81,22 @@ def dimension_of(channel: str) -> str:
     'speed'
 
     """
-    for suffix, dimension in SUFFIXES.items():
-        if re.fullmatch(rf"[a-z][a-z0-9_]*_{suffix}", channel):
-            return dimension
+    symbol = si_symbol(channel)
+    states = symbol in _DIMENSIONS and (symbol != "1" or channel.endswith("_1"))
+    if states and re.fullmatch(r"[a-z][a-z0-9_]*", channel):
+        return _DIMENSIONS[symbol]
     raise LogError(
         f"channel '{channel}': the name does not end with its unit; it must be lower case and "
-        f"end with one of {', '.join('_' + suffix for suffix in SUFFIXES)}, such as position_m"
+        f"end with one of {', '.join('_' + ending for ending in _ENDINGS)}, such as position_m"
     )
 
 
 def si_symbol(channel: str) -> str:
     """Return the unit in which a channel is kept, such as ``N`` for ``force_n``."""
-    dimension = dimension_of(channel)
-    return next(u.symbol for u in _UNITS if u.dimension == dimension)
+    return unit_of(channel).symbol
 
 
-def unit_of(symbol: str, channel: str) -> Unit:
+def unit_named(symbol: str, channel: str) -> FileUnit:
     """Return the unit that a symbol means for a channel.
 
     Raises
@@ -112,9 +106,9 @@ def unit_of(symbol: str, channel: str) -> Unit:
 
     Examples
     --------
-    >>> unit_of("µm", "position_m").factor
+    >>> unit_named("µm", "position_m").factor
     1e-06
-    >>> unit_of("mm", "force_n")
+    >>> unit_named("mm", "force_n")
     Traceback (most recent call last):
         ...
     breakaway.errors.LogError: channel 'force_n': the unit 'mm' measures length, not force; it \
@@ -137,7 +131,7 @@ must be one of N, mN, uN, kN, MN, lbf, kgf
     return found
 
 
-def stated(symbol: str, channel: str) -> Unit | None:
+def stated(symbol: str, channel: str) -> FileUnit | None:
     """Return the unit that a header or a file states for a channel, or None.
 
     Upper and lower case count where they tell units apart (mN, MN), else they do not. None
@@ -146,7 +140,7 @@ def stated(symbol: str, channel: str) -> Unit | None:
     Examples
     --------
     >>> stated("KN", "force_n").symbol, stated("mn", "force_n"), stated("m_s", "velocity_m_per_s")
-    ('kN', None, Unit(symbol='m/s', dimension='speed', factor=1.0, offset=0.0))
+    ('kN', None, FileUnit(symbol='m/s', dimension='speed', factor=1.0, offset=0.0))
 
     """
     text = plain(symbol.replace("_per_", "/").replace("_", "/"))

@@ -14,6 +14,7 @@ from breakaway._core import OUTCOMES
 from breakaway.base.equality import ByValue
 from breakaway.errors import StudyError
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.units import unit_of
 from breakaway.run.batch.columns import at_run
 from breakaway.run.finished import Run
 
@@ -101,7 +102,7 @@ class Batch(ByValue):
             codes = arrow.array(self.outcome_codes.astype(np.int8))
             columns["outcome"] = arrow.DictionaryArray.from_arrays(codes, list(OUTCOMES))
         fields = [
-            arrow.field(name, column.type, nullable=False, metadata={"unit": unit_of(name)})
+            arrow.field(name, column.type, nullable=False, metadata={"unit": unit_of(name).symbol})
             for name, column in columns.items()
         ]
         about = {"scenario": self.scenario.name, "seed": str(self.scenario.seed)}
@@ -136,7 +137,7 @@ class Batch(ByValue):
         import xarray
 
         data = {
-            name: ("run_index", values, {"units": unit_of(name)})
+            name: ("run_index", values, {"units": unit_of(name).symbol})
             for name, values in self.columns.items()
         }
         attributes = {"scenario": self.scenario.name, "seed": self.scenario.seed}
@@ -164,40 +165,3 @@ def as_pandas(table: Any) -> Any:  # noqa: ANN401 - pyarrow has no type stubs, p
             "pandas is not installed; install it with: pip install 'breakaway[pandas]'"
         ) from None
     return table.to_pandas()
-
-
-def unit_of(name: str) -> str:
-    """Read the unit of a column from its name.
-
-    Examples
-    --------
-    >>> unit_of("joint.stiffness_n_per_m"), unit_of("iae_m_s"), unit_of("impacts")
-    ('N/m', 'm s', '1')
-
-    """
-    return next((unit for suffix, unit in UNITS.items() if name.endswith(suffix)), "1")
-
-
-UNITS = {
-    "_n_per_m_s": "N/(m s)",
-    "_n_s_per_m": "N s/m",
-    "_n_per_m": "N/m",
-    "_m_per_s2": "m/s^2",
-    "_m_per_s": "m/s",
-    "_m2_s": "m^2 s",
-    "_m_s2": "m s^2",
-    "_m_s": "m s",
-    "_per_s": "1/s",
-    "_n_s": "N s",
-    "_kg": "kg",
-    "_hz": "Hz",
-    "_n": "N",
-    "_m": "m",
-    "_j": "J",
-    "_s": "s",
-    "_a": "A",
-    "_w": "W",
-    "_f": "F",
-    "_v": "V",
-}
-"""Ending of a name -> unit; longer endings first."""

@@ -28,7 +28,7 @@ from breakaway.measure.identification.prediction import Prediction
 from breakaway.measure.identification.record import Span
 from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.uncertainty import LEVEL, Profile
-from breakaway.run.batch.batch import UNITS
+from breakaway.model.units import unit_of, words_of
 from breakaway.show.plots.style import COLORS, WIDTH_IN, house_figure, house_style, scaled
 
 Array = NDArray[np.float64]
@@ -45,24 +45,6 @@ LABELED = 8
 
 CORNER = 6
 """Most parameters in the matrix of a posterior."""
-
-
-def words_and_unit(name: str) -> tuple[str, str]:
-    """Split the name of a parameter into words and unit.
-
-    Parameters
-    ----------
-    name : str
-        Such as ``stiffness_n_per_m``.
-
-    Examples
-    --------
-    >>> words_and_unit("coulomb_positive_n"), words_and_unit("stiction_ratio")
-    (('Coulomb positive', 'N'), ('stiction ratio', ''))
-
-    """
-    end = next((end for end in UNITS if name.endswith(end)), "")
-    return _proper(name.removesuffix(end).replace("_", " ")), UNITS.get(end, "")
 
 
 def law_words(law: Law) -> str:
@@ -84,27 +66,6 @@ def law_words(law: Law) -> str:
 
 def _proper(words: str) -> str:
     return words.replace("coulomb", "Coulomb").replace("stribeck", "Stribeck")
-
-
-def easy_unit(values: object, unit: str) -> tuple[float, str]:
-    """Give the factor and the unit in which values of a parameter are easy to read.
-
-    Parameters
-    ----------
-    values : array_like
-        What is shown, in ``unit``.
-    unit : str
-        As `words_and_unit` gives it; units of mass and those without a unit get no prefix.
-
-    Examples
-    --------
-    >>> easy_unit([1.28e6], "N/m"), easy_unit([0.0147], "m/s"), easy_unit([95.0], "kg")
-    ((1e-06, 'MN/m'), (1000.0, 'mm/s'), (1.0, 'kg'))
-
-    """
-    if not unit.startswith(("N", "m")):
-        return 1.0, unit
-    return scaled(np.asarray(values, dtype=np.float64), unit)
 
 
 def plot_fit(prediction: Prediction, spans: Sequence[Span] = ()) -> Figure:
@@ -288,10 +249,9 @@ class _Drawn:
 
 
 def _drawn(found: Identification, samples: Mapping[str, Array], name: str) -> _Drawn:
-    words, unit = words_and_unit(name)
-    factor, shown = easy_unit([np.median(np.abs(samples[name]))], unit)
+    factor, shown = scaled([np.median(np.abs(samples[name]))], unit_of(name).symbol)
     brackets = f" ({shown})" if shown else ""
-    label = "\n".join(textwrap.wrap(words, 12)) + brackets.replace(" ", "\n", 1)
+    label = "\n".join(textwrap.wrap(words_of(name), 12)) + brackets.replace(" ", "\n", 1)
     return _Drawn(label, samples[name] * factor, found.values[name] * factor)
 
 
@@ -373,8 +333,8 @@ def plot_profiles(found: Identification, profiles: Sequence[Profile]) -> Figure:
 
 
 def _draw_profile(axes: Axes, one: Profile, estimate: float) -> None:
-    words, unit = words_and_unit(one.name)
-    factor, shown = easy_unit([estimate], unit)
+    words = words_of(one.name)
+    factor, shown = scaled([estimate], unit_of(one.name).symbol)
     limit = float(chi2.ppf(LEVEL, 1))
     low, high = (float(np.clip(end, one.values[0], one.values[-1])) for end in (one.low, one.high))
     axes.axvspan(low * factor, high * factor, color=COLORS["ours"], alpha=0.15, linewidth=0.0)

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from breakaway.base import text
-from breakaway.run.batch.batch import UNITS
+from breakaway.model.units import unit_of, words_of
 from breakaway.show.plots.comparison import LAW_WORDS
 from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
@@ -206,7 +206,7 @@ def plot_sensitivity(title: str, rows: Sequence[Row]) -> Figure:
                     error_kw={"linewidth": 0.9, "capsize": 2},
                     label=label,
                 )
-            axes.set_title(_words(metric), fontsize=9)
+            axes.set_title(words_of(metric), fontsize=9)
             axes.axvline(0.0, color=COLORS["axis"], linewidth=0.7)
             axes.grid(visible=False, axis="y")
         panels[0].set_yticks(place, inputs)
@@ -285,7 +285,7 @@ def _difference_bars(axes: Axes, rows: Sequence[Row], metric: str, first: str) -
     axes.set_yticks(place, [text.label(str(row["controller"])) for row in rows])
     axes.set_ylim(-0.7, len(rows) - 0.3)
     axes.set_xlabel(
-        f"{_words(metric)} less that of {text.label(first)}{f' ({unit})' if unit else ''}"
+        f"{words_of(metric)} less that of {text.label(first)}{f' ({unit})' if unit else ''}"
     )
     axes.grid(visible=False, axis="y")
 
@@ -343,7 +343,7 @@ def _law_bars(axes: Axes, conclusion: Row, rows: Sequence[Row]) -> None:
     axes.set_yticks(place, [_law_label(row, several=several) for row in rows])
     axes.set_ylim(-0.6, len(rows) - 0.4)
     axes.grid(visible=False, axis="y")
-    of = "share released" if quantity == "released" else _words(quantity)
+    of = "share released" if quantity == "released" else words_of(quantity)
     first, other = (text.label(str(conclusion[key])) for key in ("first", "other"))
     axes.set_xlabel(f"{of}: {other} less {first}{f' ({unit})' if unit else ''}")
     verdict = str(conclusion["verdict"])
@@ -442,27 +442,15 @@ def _short(value: object) -> str:
 
 def _factor(rows: Sequence[Row], keys: Sequence[str], name: str) -> tuple[float, str]:
     """Give the factor and unit in which some columns of a metric are easy to read."""
-    unit = _unit(name)
-    if unit not in ("m", "s", "N", "J", "m/s"):
-        return 1.0, unit
-    return scaled(np.concatenate([_column(rows, key) for key in keys]), unit)
-
-
-def _unit(name: str) -> str:
-    return next((unit for suffix, unit in UNITS.items() if name.endswith(suffix)), "")
-
-
-def _words(name: str) -> str:
-    suffix = next((suffix for suffix in UNITS if name.endswith(suffix)), "")
-    return name.removesuffix(suffix).replace("_", " ")
+    return scaled(np.concatenate([_column(rows, key) for key in keys]), unit_of(name).symbol)
 
 
 def _label(name: str, unit: str) -> str:
-    return f"{_words(name)} ({unit})" if unit else _words(name)
+    return f"{words_of(name)} ({unit})" if unit else words_of(name)
 
 
 def _in_brackets(path: str) -> str:
-    unit = _unit(path)
+    unit = unit_of(path).shown
     return f" ({unit})" if unit else ""
 
 

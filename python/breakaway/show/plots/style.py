@@ -13,6 +13,8 @@ from cycler import cycler
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from breakaway.model.units import unit_with
+
 COLORS = {
     "ours": "#0072B2",
     "alternative": "#D55E00",
@@ -67,9 +69,6 @@ _STYLE: Any = {
     "ytick.labelcolor": COLORS["text"],
     "ytick.labelsize": 8,
 }
-
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-_LARGEST_POWER = {"m": 0, "s": 0}
 
 
 @contextmanager
@@ -130,7 +129,7 @@ def scaled(values: ArrayLike, unit: str) -> tuple[float, str]:
     values : array_like
         What an axis shows, in ``unit``; what is not finite is left out.
     unit : str
-        ``m``, ``s``, ``N`` or another unit that takes prefixes.
+        Symbol of a unit of `breakaway.model.units`, such as ``N s/m``.
 
     Examples
     --------
@@ -141,8 +140,5 @@ def scaled(values: ArrayLike, unit: str) -> tuple[float, str]:
     array: NDArray[np.float64] = np.abs(np.asarray(values, dtype=np.float64))
     finite = array[np.isfinite(array)]
     largest = float(finite.max()) if finite.size else 0.0
-    if largest == 0.0:
-        return 1.0, unit
-    power = 3 * int(np.floor(np.log10(largest * (1 + 1e-9)) / 3))
-    power = max(-9, min(power, _LARGEST_POWER.get(unit, 9)))
-    return 10.0**-power if power <= 0 else 1.0 / 10.0**power, _PREFIXES[power] + unit
+    power = unit_with(unit).power_of(largest * (1 + 1e-9)) if largest else 0
+    return 10.0**-power if power <= 0 else 1.0 / 10.0**power, unit_with(unit).prefixed(power)

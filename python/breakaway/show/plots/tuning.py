@@ -14,7 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from numpy.typing import NDArray
 
 from breakaway.base import text
-from breakaway.run.batch.batch import UNITS
+from breakaway.model.units import unit_of, words_of
 from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
 Row = Mapping[str, Any]
@@ -278,7 +278,7 @@ def _slice(
         axes.set_xlim(
             *(factor * (end + 0.04 * side * (high - low)) for end, side in ((low, -1), (high, 1)))
         )
-    words = _words(path.rpartition(".")[2])
+    words = words_of(path.rpartition(".")[2])
     axes.set_xlabel(f"{words} ({unit})" if unit else words)
     axes.set_title(_correlation(place, value), fontsize=8, loc="right", pad=2)
 
@@ -302,20 +302,11 @@ def _factor(rows: Sequence[Row], name: str) -> tuple[float, str]:
 
 def _scale(name: str, values: Any) -> tuple[float, str]:  # noqa: ANN401 - array-like
     """Give the factor and unit in which the values of a name are easy to read."""
-    unit = next((unit for suffix, unit in UNITS.items() if name.endswith(suffix)), "")
-    if unit in ("m", "s", "N", "J", "m/s", "N/m"):
-        factor, prefixed = scaled(values, unit)
-        return (factor, prefixed) if unit != "m/s" or factor >= 1.0 else (1.0, unit)
-    return 1.0, unit.replace("^2", "²")
-
-
-def _words(name: str) -> str:
-    suffix = next((suffix for suffix in UNITS if name.endswith(suffix)), "")
-    return name.removesuffix(suffix).replace("_", " ")
+    return scaled(values, unit_of(name).symbol)
 
 
 def _label(name: str, unit: str) -> str:
-    return f"{_words(name)} ({unit})" if unit else _words(name)
+    return f"{words_of(name)} ({unit})" if unit else words_of(name)
 
 
 def _title(figure: Figure, words: str) -> None:

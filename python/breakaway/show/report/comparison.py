@@ -14,6 +14,7 @@ from markupsafe import Markup
 from breakaway._core import __version__
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import PartPopulation
+from breakaway.model.units import unit_of
 from breakaway.show.plots.comparison import LAW_WORDS, Course
 from breakaway.show.report.page import inline_svg, render
 
@@ -172,14 +173,17 @@ def _alone(name: str, heading: str) -> Column:
     )
 
 
-def _spread(name: str, heading: str, unit: str, factor: float = 1.0) -> Column:
+def _spread(name: str, heading: str, power: int = 0) -> Column:
     def show(row: Row) -> tuple[str, str]:
+        factor = 10.0**-power
         return _digits(row[f"{name}_median"], factor), _digits(row[f"{name}_p99"], factor)
 
+    unit = unit_of(name).prefixed(power) or "1"
     return Column(heading, unit, (f"{name}_median", f"{name}_p99"), show)
 
 
-def _single(key: str, heading: str, unit: str) -> Column:
+def _single(name: str, heading: str, counted: str = "") -> Column:
+    key, unit = f"{name}_median", counted or unit_of(name).shown
     return Column(heading, unit, (key,), lambda row: (_digits(row[key], 1.0), ""))
 
 
@@ -208,16 +212,16 @@ COLUMNS = (
     _alone("force", "within force"),
     _alone("jump", "within jump"),
     _alone("velocity", "within velocity"),
-    _spread("time_to_release_s", "time to release", "s"),
-    _spread("largest_jump_m", "largest jump", "mm", 1e3),
-    _spread("peak_over_breakaway", "peak / breakaway", "1"),
-    _spread("release_velocity_m_per_s", "release velocity", "m/s"),
-    _spread("largest_impact_work_j", "largest impact", "J"),
-    _spread("impulse_n_s", "impulse", "N s"),
+    _spread("time_to_release_s", "time to release"),
+    _spread("largest_jump_m", "largest jump", -3),
+    _spread("peak_over_breakaway", "peak / breakaway"),
+    _spread("release_velocity_m_per_s", "release velocity"),
+    _spread("largest_impact_work_j", "largest impact"),
+    _spread("impulse_n_s", "impulse"),
     Column("best other", "gentle parts that only one frees", (), _against),
-    _single("stack_cycles_median", "stack", "cycles"),
-    _single("rms_current_a_median", "RMS current", "A"),
-    _single("stack_loss_w_median", "stack loss", "W"),
+    _single("stack_cycles", "stack", "cycles"),
+    _single("rms_current_a", "RMS current"),
+    _single("stack_loss_w", "stack loss"),
 )
 """Columns of the table; a spread's cell says the median, and the 99 % quantile below."""
 

@@ -22,10 +22,10 @@ from breakaway.measure.identification.prediction import Prediction
 from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.uncertainty import Posterior, Profile
 from breakaway.measure.identification.verdicts import Estimate, Verdict, stiction_peak
+from breakaway.model.units import unit_of, words_of
 from breakaway.show.plots.events import plot_breakaway
 from breakaway.show.plots.friction import plot_friction_velocity, plot_hysteresis
 from breakaway.show.plots.identification import (
-    easy_unit,
     law_words,
     plot_drift,
     plot_fit,
@@ -33,9 +33,8 @@ from breakaway.show.plots.identification import (
     plot_posterior,
     plot_profiles,
     plot_residual,
-    words_and_unit,
 )
-from breakaway.show.plots.style import save_figure
+from breakaway.show.plots.style import save_figure, scaled
 from breakaway.show.report.page import inline_svg, render
 
 DRAWN = 4000
@@ -227,7 +226,7 @@ def _headline(found: Identification) -> str:
 
 def _error_unit(prediction: Prediction, error: float) -> tuple[str, float, str]:
     channel, unit = ("position", "m") if prediction.channel == "position_m" else ("force", "N")
-    return (channel, *easy_unit([error], unit))
+    return (channel, *scaled([error], unit))
 
 
 def _held_out(prediction: Prediction | None) -> str:
@@ -263,12 +262,11 @@ def _parameters(found: Identification, profiles: Sequence[Profile]) -> list[dict
 
 
 def _parameter(one: Estimate, because: str, profile: Profile | None) -> dict[str, str]:
-    words, unit = words_and_unit(one.name)
-    factor, shown = easy_unit([one.value], unit)
+    factor, shown = scaled([one.value], unit_of(one.name).symbol)
     value, error = uncertain(one.value * factor, float(one.standard_error) * factor)
     told = float(one.standard_error) * factor if one.identifiable else 0.0
     return {
-        "words": words,
+        "words": words_of(one.name),
         "value": f"{value} ± {error}",
         "interval": _interval(one.low * factor, one.high * factor, told),
         "profile": ""
@@ -287,12 +285,11 @@ def _remark(one: Estimate, because: str) -> str:
 
 
 def _held(name: str, value: float) -> dict[str, str]:
-    words, unit = words_and_unit(name)
-    factor, shown = easy_unit([value], unit)
+    factor, shown = scaled([value], unit_of(name).symbol)
     nothing = dict.fromkeys(("interval", "profile"), "–")
     remark = "held, not fitted"
     return {
-        "words": words, "value": f"{value * factor:.6g}", "unit": shown, "told": "–",
+        "words": words_of(name), "value": f"{value * factor:.6g}", "unit": shown, "told": "–",
         "remark": remark, **nothing,
     }  # fmt: skip
 
@@ -311,7 +308,7 @@ def _interval(low: float, high: float, error: float) -> str:
 def _untold(found: Identification) -> list[dict[str, str]]:
     return [
         {
-            "words": words_and_unit(one.parameter)[0],
+            "words": words_of(one.parameter),
             "because": one.because,
             "remedy": one.remedy,
         }
