@@ -39,7 +39,9 @@ class Kind:
 
 RUN = Kind("a run", "metrics.json", frozenset({"outcome", "metrics", "breakaway_version"}))
 STUDY = Kind(
-    "a study, tuning or comparison", "manifest.json", frozenset({"format", "identity", "study"})
+    "a study, tuning or comparison",
+    "manifest.json",
+    frozenset({"format", "identity", "breakaway_version"}),
 )
 DESIGN = Kind("a design", "design.json", frozenset({"scenario", "controller", "gain_sets"}))
 C_SOURCES = Kind("exported C", "interface.json", frozenset({"breakaway_version", "what"}))

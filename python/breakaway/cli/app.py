@@ -126,7 +126,7 @@ app.command(
 app.command(
     epilog=_examples(
         "breakaway tune gentle.toml --out tuned",
-        "breakaway tune gentle.toml --out tuned --resume --trials 200",
+        "breakaway tune gentle.toml --out tuned --resume --evaluations 200",
         "breakaway tune gentle.toml --out tuned --json | jq .result",
     )
 )(tune)

@@ -17,7 +17,7 @@ from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
     from breakaway.ask.comparison import Comparison
-    from breakaway.ask.studies import StudyProgress
+    from breakaway.ask.durable.progress import Progress
 
 Row = Mapping[str, Any]
 
@@ -30,7 +30,7 @@ def compare(
         str, typer.Argument(help="Name of a preset, or path of a TOML file.")
     ] = "seized_parts",
     out: Annotated[
-        Path, typer.Option(help="Folder for parts, table, figures, page.", metavar="DIR")
+        Path, typer.Option(help="Folder for pieces, table, figures, page.", metavar="DIR")
     ] = Path("comparison"),
     runs: Annotated[
         int | None, typer.Option(help="Parts that each method tries. Left out: 10,000.")
@@ -69,8 +69,8 @@ def compare(
 
     POPULATION is the name of a preset or a TOML file: of a population, or the
     comparison.toml of an earlier comparison, which is then run again. The
-    folder receives the parts as they finish (Parquet), and in the end
-    table.csv, figures, and index.html, a page that needs no network. A
+    folder receives the trials in pieces as they finish (Parquet), and in the
+    end table.csv, figures, and index.html, a page that needs no network. A
     comparison that was interrupted goes on with --resume and computes nothing
     twice.
     """
@@ -94,7 +94,7 @@ def compare(
             )
     except (KeyboardInterrupt, OutputError):
         if is_there(out / "manifest.json"):
-            say_aside(f"finished parts are kept; go on with: {_again(out)}")
+            say_aside(f"what is finished is kept; go on with: {_again(out)}")
         raise
     if json:
         say_json(_document(done))
@@ -113,12 +113,12 @@ def _again(out: Path) -> str:
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[StudyProgress], None]]:
+def _progress() -> Iterator[Callable[[Progress], None]]:
     """Show how far the parts are, and then that figures are drawn."""
     with shown_progress() as report, ExitStack() as after:
         drawing = False
 
-        def tell(at: StudyProgress) -> None:
+        def tell(at: Progress) -> None:
             nonlocal drawing
             report(at)
             if at.runs_done >= at.runs_max and not drawing:

@@ -12,11 +12,11 @@ from breakaway.base.text import visible
 from breakaway.cli.interrupts import raise_if_interrupted
 
 if TYPE_CHECKING:
-    from breakaway.ask.studies import StudyProgress
+    from breakaway.ask.durable.progress import Progress
 
 
 @contextmanager
-def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None]]:
+def shown_progress(name: str = "") -> Iterator[Callable[[Progress], None]]:
     """Show on a terminal how far runs are: bar, runs, rate, time left; in pipes nothing.
 
     The bar is there while runs are under way and not between, where other lines may be printed. A
@@ -26,18 +26,19 @@ def shown_progress(name: str = "") -> Iterator[Callable[[StudyProgress], None]]:
         yield lambda _at: raise_if_interrupted()
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn
+    from rich.progress import BarColumn, TextColumn
+    from rich.progress import Progress as Bar
 
     columns = (
         TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=None),
         TextColumn("{task.percentage:>3.0f} %  {task.fields[told]}", markup=False),
     )
-    bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    bar = Bar(*columns, console=Console(stderr=True), transient=True)
     task = bar.add_task("", total=None, told="")
     began = time.monotonic()
 
-    def report(at: StudyProgress) -> None:
+    def report(at: Progress) -> None:
         raise_if_interrupted()
         told = progress_in_words(at, time.monotonic() - began)
         doing = visible(f"{name}: {at.doing}" if name else at.doing)
@@ -57,7 +58,8 @@ def counted(doing: str, units: str) -> Iterator[Callable[[int, int], None]]:
         yield lambda _done, _total: raise_if_interrupted()
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+    from rich.progress import Progress as Bar
 
     columns = (
         TextColumn("{task.description}", markup=False),
@@ -65,7 +67,7 @@ def counted(doing: str, units: str) -> Iterator[Callable[[int, int], None]]:
         MofNCompleteColumn(),
         TextColumn(units, markup=False),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(doing, total=None)
 
         def report(done: int, total: int) -> None:
@@ -75,15 +77,15 @@ def counted(doing: str, units: str) -> Iterator[Callable[[int, int], None]]:
         yield report
 
 
-def progress_in_words(at: StudyProgress, elapsed_s: float) -> str:
+def progress_in_words(at: Progress, elapsed_s: float) -> str:
     """Say how many runs are done, how fast, and how long the rest takes at most.
 
     Runs that were found on disk do not count into the rate.
 
     Examples
     --------
-    >>> from breakaway.ask.studies import StudyProgress
-    >>> at = StudyProgress(runs_done=3000, runs_found=1000, runs_max=9000, doing="grid")
+    >>> from breakaway.ask.durable.progress import Progress
+    >>> at = Progress(runs_done=3000, runs_found=1000, runs_max=9000, doing="grid")
     >>> progress_in_words(at, 20.0)
     '3000 of 9000 runs, 100 runs/s, 1 min 00 s left'
 

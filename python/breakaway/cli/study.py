@@ -26,7 +26,7 @@ OUTCOMES = ("released", "not_released", "limit_exceeded", "diverged")
 def study(
     file: Annotated[Path, typer.Argument(help="TOML file of the study.", metavar="STUDY.toml")],
     out: Annotated[
-        Path, typer.Option(help="Folder for parts, summary, tables and figures.", metavar="DIR")
+        Path, typer.Option(help="Folder for pieces, summary, tables and figures.", metavar="DIR")
     ],
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a study that DIR holds.")
@@ -41,11 +41,12 @@ def study(
     The kind of study is a sweep, robustness, sensitivity, compare, or agreement
     of friction laws.
 
-    The folder receives manifest.json first, then the runs in parts as they
+    The folder receives manifest.json first, then the runs in pieces as they
     finish (Parquet), and in the end summary.json, tables (CSV), figures, and
     study.toml, which holds all it takes to run it again. A study that was
     interrupted or killed goes on with --resume and computes nothing twice.
     """
+    from breakaway.ask.durable.journal import PIECES
     from breakaway.ask.studies import load_study, run_study
 
     asked = load_study(file)
@@ -56,12 +57,12 @@ def study(
     try:
         with shown_progress(asked.name) as progress:
             done = run_study(
-                asked, out, resume=resume, threads=threads, progress=progress, notice=say_aside
+                asked, out=out, resume=resume, threads=threads, progress=progress, notice=say_aside
             )
     except (KeyboardInterrupt, OutputError):
         if is_there(out / "manifest.json"):
             say_aside(
-                f"finished parts are kept; go on with: breakaway study {file} --out {out} --resume"
+                f"what is finished is kept; go on with: breakaway study {file} --out {out} --resume"
             )
         raise
     files = sorted(path for path in out.iterdir() if path.is_file() and path.name[0] != ".")
@@ -74,7 +75,7 @@ def study(
         say(sentence)
     for note in summary["notes"]:
         say(f"note: {note}")
-    say(f"wrote {len(done.part_files)} parts to {out / 'parts'}")
+    say(f"wrote {len(done.piece_files)} pieces to {out / PIECES}")
     for path in files:
         say(f"wrote {path}")
 

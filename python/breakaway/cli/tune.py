@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,16 +16,17 @@ from breakaway.cli.show import Sheet, say, say_aside, say_json
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
-    from breakaway.ask.studies import StudyProgress
+    from breakaway.ask.durable.progress import Progress
     from breakaway.ask.tuning import Tuning, TuningProgress
 
 
 def tune(
     file: Annotated[Path, typer.Argument(help="TOML file of the tuning.", metavar="TUNING.toml")],
     out: Annotated[
-        Path, typer.Option(help="Folder for trials, methods, tables and figures.", metavar="DIR")
+        Path,
+        typer.Option(help="Folder for evaluations, methods, tables and figures.", metavar="DIR"),
     ],
-    trials: Annotated[
+    evaluations: Annotated[
         int | None, typer.Option(min=1, help="Methods to try. Left out: as the file says.")
     ] = None,
     resume: Annotated[
@@ -37,10 +39,10 @@ def tune(
 ) -> None:
     """Tune a method on parts of a population, and score it on parts that tuning never saw.
 
-    The folder receives manifest.json first, then each trial as it finishes, and
-    in the end summary.json, best.toml (the recommended method, complete), a file
+    The folder receives manifest.json first, then each evaluation as it finishes,
+    and in the end summary.json, best.toml (the recommended method, complete), a file
     for each point of the front, tables (CSV) and figures. A tuning that was
-    interrupted or killed goes on with --resume, also with more --trials.
+    interrupted or killed goes on with --resume, also with more --evaluations.
     """
     from breakaway.ask.tuning import load_tuning
     from breakaway.ask.tuning import tune as run_tuning
@@ -52,8 +54,8 @@ def tune(
         with shown_progress(asked.name) as progress:
             done = run_tuning(
                 asked,
-                out,
-                trials=trials,
+                out=out,
+                evaluations=evaluations,
                 resume=resume,
                 threads=threads,
                 progress=_told(progress),
@@ -61,9 +63,9 @@ def tune(
             )
     except (KeyboardInterrupt, OutputError):
         if is_there(out / "manifest.json"):
-            more = "" if trials is None else f" --trials {trials}"
+            more = "" if evaluations is None else f" --evaluations {evaluations}"
             say_aside(
-                f"finished trials are kept; go on with: breakaway tune {file} --out {out}{more} "
+                f"what is finished is kept; go on with: breakaway tune {file} --out {out}{more} "
                 "--resume"
             )
         raise
@@ -82,21 +84,12 @@ def tune(
         say(f"wrote {path}")
 
 
-def _told(progress: Callable[[StudyProgress], None]) -> Callable[[TuningProgress], None]:
+def _told(progress: Callable[[Progress], None]) -> Callable[[TuningProgress], None]:
     """Tell the best so far beside how far the parts are."""
-    from breakaway.ask.studies import StudyProgress
 
     def tell(at: TuningProgress) -> None:
         best = ", ".join(f"{split_unit(name)[0]} {show(name, v)}" for name, v in at.best.items())
-        doing = f"{at.doing}, best: {best}" if best else at.doing
-        progress(
-            StudyProgress(
-                runs_done=at.runs_done,
-                runs_found=at.runs_found,
-                runs_max=at.runs_max,
-                doing=doing,
-            )
-        )
+        progress(replace(at, doing=f"{at.doing}, best: {best}") if best else at)
 
     return tell
 

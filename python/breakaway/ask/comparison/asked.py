@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 import tomli_w
 from pydantic import Field, model_validator
 
-from breakaway.ask.studies.study import StudyModel
+from breakaway.ask.studies.base import StudyModel
 from breakaway.base.reading import read_toml
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
@@ -42,13 +42,15 @@ class Asked(StudyModel):
     """Friction laws of their joints; the courses of single parts are shown under the first."""
     runs: Annotated[int, Field(ge=1, lt=RUNS_MAX)] = USUAL_RUNS
     """How many parts each method tries under each law."""
+    first: Annotated[int, Field(ge=0, lt=2**62)] = 0
+    """Number of the first of them."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Seed of parts, disturbances and noise."""
     baselines: list[Name] = Field(default_factory=list)
     """Names of the methods that the others are measured against, by the best of them. Left out:
     all."""
-    runs_per_part: Annotated[int, Field(ge=1)] = 5000
-    """Parts of the population in one file: many fill the processor's lanes, few are soon lost."""
+    runs_per_piece: Annotated[int, Field(ge=1)] = 5000
+    """Parts of the population in one piece: many fill the processor's lanes, few are soon lost."""
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -61,6 +63,11 @@ class Asked(StudyModel):
             if name not in names:
                 raise ValueError(f"baselines: {name!r} is not one of {', '.join(names)}")
         return self
+
+    @property
+    def numbers(self) -> range:
+        """Numbers of the parts that each method tries under each law."""
+        return range(self.first, self.first + self.runs)
 
     @property
     def names(self) -> list[str]:
@@ -78,7 +85,7 @@ def ask(
     methods: Sequence[str | Path | Method] | str | None = None,
     *,
     laws: Sequence[str] | str | None = None,
-    runs: int | None = None,
+    runs: int | range | None = None,
     seed: int | None = None,
     baselines: Sequence[str] | str | None = None,
 ) -> Asked:
@@ -97,7 +104,7 @@ def ask(
     """
     whole = _whole(population) if isinstance(population, str | Path) else None
     lists = {"laws": _listed(laws), "baselines": _listed(baselines)}
-    given = {"runs": runs, "seed": seed, **lists}
+    given = {**_counted(runs), "seed": seed, **lists}
     values: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     for law in lists["laws"] or ():
         _check_law(law)
@@ -111,6 +118,18 @@ def ask(
         chosen = preset_names("methods") if methods is None else _listed(methods) or []
         values["methods"] = [m if isinstance(m, Method) else load_method(m) for m in chosen]
     return Asked(**values)
+
+
+def _counted(runs: int | range | None) -> dict[str, Any]:
+    """Give a range of part numbers as a first one and how many; a number stays as it is."""
+    if not isinstance(runs, range):
+        return {"runs": runs}
+    if not runs or runs.step != 1:
+        raise StudyError(
+            f"runs: {runs!r} is not a range of one part or more that leaves none out; give a range "
+            "such as range(1000, 1500), or a number"
+        )
+    return {"first": runs.start, "runs": len(runs)}
 
 
 def _listed(given: Sequence[AnyName] | AnyName | None) -> list[AnyName] | None:

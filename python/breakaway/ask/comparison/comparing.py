@@ -14,15 +14,20 @@ from breakaway.ask.comparison.asked import Asked, ask
 from breakaway.ask.comparison.ending import ended, manifest_of, write_end
 from breakaway.ask.comparison.findings import notes_of, sentences_of
 from breakaway.ask.comparison.table import table_of
-from breakaway.ask.comparison.trial_files import Chunk, TrialFiles, chunks_of
-from breakaway.ask.studies import StudyProgress
-from breakaway.ask.studies.folder import prepared
-from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.comparison.trial_pieces import (
+    TrialPiece,
+    pieces_of,
+    read_trial,
+    trial_as_bytes,
+)
+from breakaway.ask.durable.arguments import as_folder, check_options
+from breakaway.ask.durable.journal import Journal
+from breakaway.ask.durable.progress import Progress
+from breakaway.ask.durable.resume import prepared
+from breakaway.ask.durable.runner import Runner
 from breakaway.ask.studies.plan import Row
 from breakaway.base.equality import ByValue
-from breakaway.base.reading import is_folder, is_there
-from breakaway.base.threads import thread_count
-from breakaway.errors import OutputError, StudyError
+from breakaway.errors import StudyError
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import Law, PartPopulation
 from breakaway.run.trials import Trial, run_trial
@@ -78,18 +83,18 @@ def compare_methods(
     methods: Sequence[str | Path | Method] | str | None = None,
     *,
     laws: Sequence[str] | str | None = None,
-    runs: int | None = None,
+    runs: int | range | None = None,
     seed: int | None = None,
     baselines: Sequence[str] | str | None = None,
     out: str | Path | None = None,
     resume: bool = False,
     threads: int | None = None,
-    progress: Callable[[StudyProgress], None] | None = None,
+    progress: Callable[[Progress], None] | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> Comparison:
     """Try methods of extraction on the same parts, under several friction laws.
 
-    With a folder, ``manifest.json`` comes first, then the parts as they finish (Parquet), then
+    With a folder, ``manifest.json`` comes first, then the pieces as they finish (Parquet), then
     ``table.csv``, figures, the page ``index.html``, ``comparison.toml``, and last
     ``summary.json``. What was ended, in whatever way, goes on with ``resume``: finished files
     are read and not computed again, and all files are the same bytes in the end. The results do
@@ -105,8 +110,9 @@ def compare_methods(
     laws : sequence of str, optional
         Friction laws of the joints; single parts are shown under the first. Left out: ``lugre``,
         ``elasto_plastic`` and ``gms``.
-    runs : int, optional
-        How many parts each method tries under each law. Left out: 10,000.
+    runs : int or range, optional
+        How many parts each method tries under each law, or the numbers of these parts. Left out:
+        the first 10,000.
     seed : int, optional
         Seed of parts, disturbances and noise. Left out: 0.
     baselines : sequence of str, optional
@@ -119,7 +125,7 @@ def compare_methods(
     threads : int, optional
         Left out: one for each processor.
     progress : callable, optional
-        Called about 20 times a second with a `StudyProgress`. What it raises ends the comparison.
+        Called about 20 times a second with a `Progress`. What it raises ends the comparison.
     notice : callable, optional
         Called with a sentence when a file that is not the one that was written, be it damaged,
         edited or of another comparison, is computed again.
@@ -148,36 +154,37 @@ def compare_methods(
 
     """
     asked = ask(population, methods, laws=laws, runs=runs, seed=seed, baselines=baselines)
-    thread_count(threads)
-    folder = None if out is None else Path(out)
-    with _held(folder, asked, resume=resume) as pieces:
-        files = None if pieces is None else TrialFiles(asked, pieces)
-        runner = _Runner(asked, files, threads, progress, notice)
-        try:
-            done = _concluded(asked, runner.run(), folder)
-            if pieces is not None:
-                if not (runner.all_found and ended(pieces)):
-                    runner.report(0, DRAWING)
-                    write_end(asked, done.trials, done.table, done.result, done.notes, pieces)
-                pieces.settle(pieces.names())
-        except OutputError as error:
-            raise OutputError(f"{error}; finished parts stay: resume it to go on") from None
+    check_options(resume=resume, threads=threads, progress=progress, notice=notice)
+    folder = None if out is None else as_folder("out", out)
+    with _held(folder, asked, resume=resume) as journal:
+        runner = Runner(
+            journal,
+            "comparison",
+            runs_max=len(asked.laws) * len(asked.methods) * asked.runs,
+            progress=progress,
+            notice=notice,
+        )
+        done = _concluded(asked, _trials_of(asked, runner, folder, threads), folder)
+        if journal is not None:
+            if runner.runs_found < runner.runs_done or not ended(journal):
+                runner.doing = DRAWING
+                runner.report()
+                write_end(asked, done.trials, done.table, done.result, done.notes, journal)
+            journal.settle(journal.names())
     return done
 
 
 @contextmanager
-def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[Pieces | None]:
-    """Check every method before anything runs, hold the folder, and give its finished files."""
+def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[Journal | None]:
+    """Check every method before anything runs, hold the folder, and give its journal."""
     for law in asked.laws:
         for method in asked.methods:
             _check(asked, method, law)
     if folder is None:
         yield None
         return
-    if is_there(folder) and not is_folder(folder):
-        raise StudyError(f"out: {folder} is a file, not a folder; give a folder")
-    with prepared(folder, manifest_of(asked), resume=resume) as pieces:
-        yield pieces
+    with prepared(folder, manifest_of(asked), resume=resume) as journal:
+        yield journal
 
 
 def _check(asked: Asked, method: Method, law: Law) -> None:
@@ -200,88 +207,46 @@ def _concluded(
     )
 
 
-class _Runner:
-    """Computes chunk by chunk; what is on disk already is read."""
-
-    def __init__(
-        self,
-        asked: Asked,
-        files: TrialFiles | None,
-        threads: int | None,
-        progress: Callable[[StudyProgress], None] | None,
-        notice: Callable[[str], None] | None,
-    ) -> None:
-        self.all_found = True
-        self._asked, self._threads = asked, threads
-        self._progress, self._notice = progress, notice
-        self._files = files
-        self._runs_done = self._runs_found = 0
-
-    def run(self) -> Mapping[str, Mapping[str, Trial]]:
-        """Give all trials, by law and name of the method."""
-        found: dict[str, dict[str, list[Trial]]] = {}
-        for chunk in chunks_of(self._asked):
-            trial = self._found(chunk) or self._computed(chunk)
-            found.setdefault(chunk.law, {}).setdefault(chunk.method.name, []).append(trial)
-        if self._files is not None:
-            self._files.remove_beyond(self._say)
-        return MappingProxyType(
-            {
-                law: MappingProxyType({name: _joined(t) for name, t in by_method.items()})
-                for law, by_method in found.items()
-            }
-        )
-
-    def _found(self, chunk: Chunk) -> Trial | None:
-        """Read a chunk from its file, if that is there as it was written."""
-        if self._files is None or not self._files.found(chunk, self._say):
-            return None
-        self._runs_done += len(chunk.runs)
-        self._runs_found += len(chunk.runs)
-        self.report(0, _doing(chunk))
-        return self._files.read(chunk)
-
-    def _computed(self, chunk: Chunk) -> Trial:
-        self.all_found = False
-        trial = run_trial(
-            self._asked.population,
-            chunk.method,
-            law=chunk.law,
-            runs=chunk.runs,
-            seed=self._asked.seed,
-            threads=self._threads,
-            progress=lambda done, _: self.report(done, _doing(chunk)),
-        )
-        if self._files is not None:
-            self._files.write(chunk, trial)
-        self._runs_done += len(chunk.runs)
-        self.report(0, _doing(chunk))
-        return trial
-
-    def report(self, in_chunk: int, doing: str) -> None:
-        """Tell how far it is."""
-        if self._progress:
-            asked = self._asked
-            self._progress(
-                StudyProgress(
-                    runs_done=self._runs_done + in_chunk,
-                    runs_found=self._runs_found,
-                    runs_max=len(asked.laws) * len(asked.methods) * asked.runs,
-                    doing=doing,
-                )
-            )
-
-    def _say(self, sentence: str) -> None:
-        if self._notice:
-            self._notice(sentence)
+def _trials_of(
+    asked: Asked, runner: Runner, folder: Path | None, threads: int | None
+) -> Mapping[str, Mapping[str, Trial]]:
+    """Give all trials, by law and name of the method, piece by piece; what is on disk is read."""
+    found: dict[str, dict[str, list[Trial]]] = {}
+    for piece in pieces_of(asked):
+        name = runner.next_piece()
+        runner.doing = f"{piece.method.name}, {piece.law}"
+        if folder is not None and runner.found(name, len(piece.runs), f"{len(piece.runs)} parts"):
+            trial = read_trial(folder / name, asked, piece)
+        else:
+            trial = _computed(asked, piece, name, runner, threads)
+        found.setdefault(piece.law, {}).setdefault(piece.method.name, []).append(trial)
+    runner.pieces_alone()
+    return MappingProxyType(
+        {
+            law: MappingProxyType({name: _joined(trials) for name, trials in by_method.items()})
+            for law, by_method in found.items()
+        }
+    )
 
 
-def _doing(chunk: Chunk) -> str:
-    return f"{chunk.method.name}, {chunk.law}"
+def _computed(
+    asked: Asked, piece: TrialPiece, name: str, runner: Runner, threads: int | None
+) -> Trial:
+    trial = run_trial(
+        asked.population,
+        piece.method,
+        law=piece.law,
+        runs=piece.runs,
+        seed=asked.seed,
+        threads=threads,
+        progress=lambda done, _: runner.report(done),
+    )
+    runner.keep(name, len(piece.runs), lambda: trial_as_bytes(trial))
+    return trial
 
 
 def _joined(trials: Sequence[Trial]) -> Trial:
-    """Put the chunks of a trial together."""
+    """Put the pieces of a trial together."""
     first, last = trials[0], trials[-1]
     if first is last:
         return first

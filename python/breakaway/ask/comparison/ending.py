@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +12,11 @@ from breakaway._core import __version__
 from breakaway.ask.comparison.asked import KIND, Asked
 from breakaway.ask.comparison.courses import Courses, courses_of
 from breakaway.ask.comparison.table import Trials
-from breakaway.ask.comparison.trial_files import trial_schema
-from breakaway.ask.studies.folder import SUMMARY, as_csv, as_json
-from breakaway.ask.studies.manifest import FORMAT, identity_of
-from breakaway.ask.studies.part_files import PARTS
-from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.comparison.trial_pieces import trial_schema
+from breakaway.ask.durable.documents import as_csv, as_json
+from breakaway.ask.durable.finished import SUMMARY
+from breakaway.ask.durable.journal import PIECES, Journal
+from breakaway.ask.durable.manifest import manifest_with
 from breakaway.ask.studies.plan import Row
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
@@ -31,25 +30,22 @@ PAGE, TABLE, ASKED = "index.html", "table.csv", "comparison.toml"
 
 def manifest_of(asked: Asked) -> dict[str, Any]:
     """Give what determines the results of a comparison, and what they look like."""
-    manifest = {
-        "format": FORMAT,
-        "breakaway_version": __version__,
-        "libraries": {name: version(name) for name in ("numpy", "scipy")},
-        "study": asked.model_dump(mode="json"),
-        "seed": asked.seed,
-        "metrics": list(TRIAL_METRICS),
-        "columns": [
+    return manifest_with(
+        asked.model_dump(mode="json"),
+        ["numpy", "scipy"],
+        seed=asked.seed,
+        metrics=list(TRIAL_METRICS),
+        columns=[
             {"name": f.name, "type": str(f.type), "unit": f.metadata[b"unit"].decode()}
             for f in trial_schema()
         ],
-    }
-    return manifest | {"identity": identity_of(manifest)}
+    )
 
 
-def ended(pieces: Pieces) -> bool:
+def ended(journal: Journal) -> bool:
     """Whether a folder has everything that the end writes, as it was written."""
-    names = [name for name in pieces.names() if not name.startswith(PARTS)]
-    return SUMMARY in names and all(pieces.flaw(name) is None for name in names)
+    names = [name for name in journal.names() if not name.startswith(f"{PIECES}/")]
+    return SUMMARY in names and all(journal.flaw(name) is None for name in names)
 
 
 def write_end(
@@ -58,11 +54,11 @@ def write_end(
     table: Sequence[Row],
     result: Sequence[str],
     notes: Sequence[str],
-    pieces: Pieces,
+    journal: Journal,
 ) -> None:
     """Write table, figures, page and the comparison itself, and last the summary."""
     courses = courses_of(trials)
-    with output_folder(pieces.folder, STUDY) as staging:
+    with output_folder(journal.folder, STUDY) as staging:
         (staging / TABLE).write_text(as_csv(table), encoding="utf-8", newline="")
         (staging / ASKED).write_text(asked.toml(), encoding="utf-8", newline="\n")
         figures = _draw(asked, trials, table, courses, staging)
@@ -82,7 +78,7 @@ def write_end(
             },
         )
         (staging / PAGE).write_text(page, encoding="utf-8", newline="\n")
-        files = pieces.note_staged(staging)
+        files = journal.note_staged(staging)
     summary = {
         "kind": KIND,
         "population": asked.population.name,
@@ -96,7 +92,7 @@ def write_end(
         "table": list(table),
         "files": files,
     }
-    pieces.write(SUMMARY, as_json(summary))
+    journal.write(SUMMARY, as_json(summary))
 
 
 def _draw(

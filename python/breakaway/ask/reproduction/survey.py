@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
+from breakaway.ask.durable.progress import Progress
 from breakaway.ask.studies import (
-    StudyProgress,
     StudyResult,
     SweepStudy,
     SweepTable,
@@ -185,7 +185,7 @@ class FullSurvey:
     """Levels of var, rising."""
     seeds: int = FULL_SEEDS
     """Runs at each level, numbered from 0."""
-    progress: Callable[[StudyProgress], None] | None = field(default=None, compare=False)
+    progress: Callable[[Progress], None] | None = field(default=None, compare=False)
     """Called about 20 times a second while runs are under way."""
     notice: Callable[[str], None] | None = field(default=None, compare=False)
     """Called with a sentence when a file of a level was damaged and is computed again."""
@@ -208,7 +208,7 @@ class FullSurvey:
             name=f"figure 10, {control.replace('_', ' ')}",
             scenario=load_scenario(CONTROLS[control]),
             runs=self.seeds,
-            runs_per_part=self.seeds,
+            runs_per_piece=self.seeds,
             metrics=list(METRICS),
             sweep=SweepTable(grid={VAR: list(self.levels)}, confidence=CONFIDENCE),
         )
@@ -235,7 +235,7 @@ class FullSurvey:
         for control in CONTROLS:
             run_study(
                 self.study(control),
-                folder / control,
+                out=folder / control,
                 resume=(folder / control / "manifest.json").exists(),
                 progress=total.reporter(control.replace("_", " ")),
                 notice=self.notice,
@@ -246,18 +246,18 @@ class FullSurvey:
 class _Total:
     """The progress of several studies, one after the other, as that of one."""
 
-    def __init__(self, runs_max: int, report: Callable[[StudyProgress], None] | None) -> None:
+    def __init__(self, runs_max: int, report: Callable[[Progress], None] | None) -> None:
         self._runs_max, self._report = runs_max, report
-        self._last = StudyProgress(runs_done=0, runs_found=0, runs_max=runs_max, doing="")
+        self._last = Progress(runs_done=0, runs_found=0, runs_max=runs_max, doing="")
 
-    def reporter(self, doing: str) -> Callable[[StudyProgress], None] | None:
+    def reporter(self, doing: str) -> Callable[[Progress], None] | None:
         """Give what the next study reports to."""
         before, report = self._last, self._report
         if report is None:
             return None
 
-        def told(at: StudyProgress) -> None:
-            self._last = StudyProgress(
+        def told(at: Progress) -> None:
+            self._last = Progress(
                 runs_done=before.runs_done + at.runs_done,
                 runs_found=before.runs_found + at.runs_found,
                 runs_max=self._runs_max,
@@ -296,7 +296,7 @@ def _read(result: StudyResult) -> DisturbanceRange:
     if not result.finished:
         raise StudyError(f"{result.folder}: is not finished; go on with breakaway reproduce --full")
     table = result.scan([VAR, *METRICS, "outcome"])
-    shape = (-1, int(result.manifest["study"]["runs"]))
+    shape = (-1, int(result.manifest["asked"]["runs"]))
     levels = table[VAR].to_numpy().reshape(shape)[:, 0]
     columns = {name: table[name].to_numpy().reshape(shape) for name in METRICS}
     return _range(levels, columns, np.asarray(table["outcome"].to_pylist()).reshape(shape))

@@ -10,7 +10,7 @@ from breakaway.ask.studies.agreement_study import (
 )
 from breakaway.ask.studies.files import load_study
 from breakaway.ask.studies.result import StudyResult, open_study
-from breakaway.ask.studies.running import StudyProgress, run_study
+from breakaway.ask.studies.running import run_study
 from breakaway.ask.studies.study import (
     ComparedController,
     CompareStudy,
@@ -35,7 +35,6 @@ __all__ = [
     "SensitivityStudy",
     "SensitivityTable",
     "SmallestTable",
-    "StudyProgress",
     "StudyResult",
     "SweepStudy",
     "SweepTable",

@@ -30,7 +30,7 @@ Share = Annotated[float, Field(gt=0.0, lt=1.0)]
 
 
 class StudyModel(Model):
-    """A part of a study; its errors are `StudyError`."""
+    """A table of what is asked; its errors are `StudyError`."""
 
     if not TYPE_CHECKING:
 
@@ -120,8 +120,8 @@ class StudyBase(StudyModel):
         default_factory=dict
     )
     """What differs from part to part: a distribution by dotted path."""
-    runs_per_part: Annotated[int, Field(ge=1, le=1_000_000)] = 8192
-    """Runs that are written together. A study that is killed loses the part that it was at."""
+    runs_per_piece: Annotated[int, Field(ge=1, le=1_000_000)] = 8192
+    """Runs that are written together. A study that is killed loses the piece that it was at."""
 
     @cached_property
     def base(self) -> Scenario:

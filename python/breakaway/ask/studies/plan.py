@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
 from breakaway.ask.studies.levels import Level
-from breakaway.ask.studies.parts import Parts, Piece
 from breakaway.ask.studies.points import Point
+from breakaway.ask.studies.run_pieces import RunPieces, Stretch
 from breakaway.ask.studies.statistics import clopper_pearson
 from breakaway.ask.studies.study import Study
 from breakaway.model.scenario.scenario import Scenario
@@ -24,19 +24,19 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class PointRuns:
-    """The finished runs of a point, in the files of the parts that hold them."""
+    """The finished runs of a point, in the pieces that hold them."""
 
     point: Point
     """The point."""
-    pieces: Sequence[tuple[int, Piece]]
-    """Part number, and the piece of it."""
-    parts: Parts
-    """Where they are."""
+    stretches: Sequence[tuple[str, Stretch]]
+    """Name of a piece, and where in it they are."""
+    pieces: RunPieces
+    """What reads pieces."""
 
     def column(self, name: str) -> NDArray[Any]:
         """Read a column of all its runs, in their order."""
         return np.concatenate(
-            [self.parts.column(name, number, piece) for number, piece in self.pieces]
+            [self.pieces.column(name, piece, stretch) for piece, stretch in self.stretches]
         )
 
     def outcomes(self) -> NDArray[np.int8]:

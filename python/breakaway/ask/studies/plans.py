@@ -39,4 +39,4 @@ def plan_of(study: Study) -> Plan:
             return ComparePlan(study)
         case AgreementStudy():
             return AgreementPlan(study)
-    raise StudyError(f"study: {type(study).__name__} is none; load one with load_study")
+    raise StudyError(f"study: {type(study).__name__} is not a study; load one with load_study")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from importlib import import_module
 from math import isfinite
@@ -11,100 +11,72 @@ from typing import Any
 
 import numpy as np
 
-from breakaway.ask.studies.folder import SUMMARY, finished_names, is_finished, read_summary
-from breakaway.ask.studies.manifest import MANIFEST, kind_of, read_manifest
-from breakaway.ask.studies.part_files import part_name, parts_in
-from breakaway.ask.studies.parts import part_schema
-from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.durable.finished import SUMMARY, DurableFolder, finished_names
+from breakaway.ask.durable.manifest import STUDY
+from breakaway.ask.durable.pieces import piece_name, pieces_in
+from breakaway.ask.studies.manifest import StudyManifest
 from breakaway.ask.studies.plans import plan_of
+from breakaway.ask.studies.run_pieces import piece_schema
 from breakaway.ask.studies.study import Study
-from breakaway.base.reading import is_file, is_there
+from breakaway.base.reading import is_there
 from breakaway.errors import StudyError
 from breakaway.run.batch.batch import as_pandas
 from breakaway.run.batch.columns import at_run, with_nominal_controller
 from breakaway.run.finished import Run
 
 
-class StudyResult:
+class StudyResult(DurableFolder):
     """A study in a folder, finished or not. Runs are read when they are asked for."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        """Where it is."""
-        self.manifest: Mapping[str, Any] = read_manifest(folder)
-        """What determines it: the study, its scenario, seed, versions, columns."""
-        kind = kind_of(self.manifest)
-        if kind != "study":
-            raise StudyError(
-                f"{folder / MANIFEST}: is of a {kind}, not of a study"
-                + ("; open it with open_tuning" if kind == "tuning" else "")
-            )
-        self._pieces = Pieces(folder, self.manifest["identity"])
+    _kind = STUDY
+    _manifest_model = StudyManifest
 
     def __repr__(self) -> str:
-        state = "finished" if self.finished else f"not finished, {len(self.part_files)} parts"
-        study = self.manifest["study"]
-        return f"<study {study['name']!r}, {study['kind']}, {state}>"
+        state = "finished" if self.finished else f"not finished, {self._kept}"
+        asked = self.manifest["asked"]
+        return f"<study {asked['name']!r}, {asked['kind']}, {state}>"
 
     @property
-    def finished(self) -> bool:
-        """Whether the study came to its end, and all parts and the summary are as it wrote them."""
-        return is_finished(self._pieces)
+    def piece_files(self) -> list[Path]:
+        """Files of the finished pieces, in their order."""
+        return [self.folder / name for name in pieces_in(self.folder)]
 
     @property
-    def part_files(self) -> list[Path]:
-        """Files of the finished parts, in their order."""
-        return [self.folder / name for name in parts_in(self.folder)]
+    def _kept(self) -> str:
+        return f"{len(self.piece_files)} pieces"
 
     @cached_property
     def study(self) -> Study:
         """What was asked."""
         from breakaway.ask.studies.files import parse_study
 
-        return parse_study(self.manifest["study"])
-
-    @property
-    def summary(self) -> dict[str, Any]:
-        """What it shows: result, notes and tables.
-
-        Raises
-        ------
-        StudyError
-            The study is not finished, or a part or the summary is not as it wrote it.
-
-        """
-        if not is_file(self.folder / SUMMARY):
-            raise StudyError(
-                f"{self.folder}: is not finished, {len(self.part_files)} parts are; "
-                "go on with --resume"
-            )
-        return read_summary(self._pieces)
+        return parse_study(self.manifest["asked"])
 
     @property
     def dataset(self) -> Any:  # noqa: ANN401 - pyarrow has no type stubs
-        """The runs of the finished parts as a dataset of pyarrow, of which nothing is read yet.
+        """The runs of the finished pieces as a dataset of pyarrow, of which nothing is read yet.
 
         Raises
         ------
         StudyError
-            A part is missing, or not as the study wrote it.
+            A piece is missing, or not as the study wrote it.
 
         """
-        self._refuse_flawed_parts()
+        self._refuse_flawed_pieces()
         manifest = self.manifest
-        schema = part_schema(manifest["labels"], manifest["varied"], manifest["metrics"])
+        schema = piece_schema(manifest["labels"], manifest["varied"], manifest["metrics"])
         return import_module("pyarrow.dataset").dataset(
-            [str(path) for path in self.part_files], schema=schema, format="parquet"
+            [str(path) for path in self.piece_files], schema=schema, format="parquet"
         )
 
-    def _refuse_flawed_parts(self) -> None:
+    def _refuse_flawed_pieces(self) -> None:
         if is_there(self.folder / SUMMARY):
-            names = finished_names(self._pieces)
+            names = finished_names(self._journal)
         else:
-            names = [part_name(number) for number in range(len(self.part_files))]
-            self._pieces.reread()
+            names = [piece_name(number) for number in range(len(self.piece_files))]
+            self._journal.reread()
         for name in names:
-            self._pieces.refuse_flawed(name)
+            self._journal.refuse_flawed(name)
 
     def scan(self, columns: Sequence[str] | None = None, filter: Any = None) -> Any:  # noqa: ANN401
         """Read some columns of the runs that pass a filter, as a table of pyarrow.
@@ -119,7 +91,7 @@ class StudyResult:
         Raises
         ------
         StudyError
-            There is no such column, or a part is missing or not as the study wrote it.
+            There is no such column, or a piece is missing or not as the study wrote it.
 
         """
         known = [column["name"] for column in self.manifest["columns"]]
@@ -155,7 +127,7 @@ class StudyResult:
         Raises
         ------
         StudyError
-            There is no such run among the finished parts.
+            There is no such run among the finished pieces.
 
         """
         from breakaway.run.simulation import simulate
@@ -204,4 +176,4 @@ def open_study(folder: str | Path) -> StudyResult:
     breakaway.errors.StudyError: nowhere: holds no study (manifest.json is missing); give ...
 
     """
-    return StudyResult(Path(folder))
+    return StudyResult(folder)

@@ -12,11 +12,11 @@ from breakaway.ask.studies.base import (
     LevelsTable,
     Share,
     StudyBase,
+    StudyModel,
     changed,
     loaded,
     percent,
 )
-from breakaway.ask.studies.base import StudyModel as StudyModel
 from breakaway.ask.studies.levels import Level, grid_levels
 from breakaway.ask.studies.statistics import runs_needed
 from breakaway.errors import ScenarioError, StudyError

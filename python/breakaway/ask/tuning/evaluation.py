@@ -31,7 +31,7 @@ class Evaluation:
     """A method that was tried on the training parts."""
 
     number: int
-    """Number of the trial."""
+    """Its place among the evaluations."""
     numbers: Mapping[str, float]
     """The tuned numbers, by dotted path."""
     laws: Laws | None = None

@@ -45,7 +45,7 @@ def load_tuning(path: str | Path) -> Tuning:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "tuning.toml"
     ...     _ = path.write_text(text)
-    ...     load_tuning(path).trials
+    ...     load_tuning(path).evaluations
     100
 
     """

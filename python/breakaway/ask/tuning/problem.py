@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from breakaway.ask.studies.study import StudyModel
+from breakaway.ask.studies.base import StudyModel
 from breakaway.ask.tuning.numbers import check_number, number_of, with_numbers
 from breakaway.ask.tuning.scores import PIEZO_METRICS, SHARES, ScoreKind, score_kind
 from breakaway.base.text import LONGEST_NAME, shown
@@ -20,9 +20,9 @@ from breakaway.model.scenario.model import Name, Text
 from breakaway.model.scenario.population import Law, PartPopulation
 from breakaway.run.trials import scenario_of
 
-TRIALS_MAX = 10_000
-"""Most trials of a tuning."""
-TUNED_LAST = f"_tuned_{TRIALS_MAX}"
+EVALUATIONS_MAX = 10_000
+"""Most evaluations of a tuning."""
+TUNED_LAST = f"_tuned_{EVALUATIONS_MAX}"
 """The longest that a tuned method has after its name."""
 TEST_FIRST, TEST_RUNS = 1_000_000, 1000
 """Unseen parts where a tuning does not say which."""
@@ -184,7 +184,7 @@ class Tuning(StudyModel):
     """Parts that are tuned on: numbers 0 to training_runs - 1."""
     test_runs: PartRange = PartRange(first=TEST_FIRST, runs=TEST_RUNS)
     """Parts that the tuned method is scored on and that tuning never sees."""
-    trials: Annotated[int, Field(ge=1, le=TRIALS_MAX)] = 100
+    evaluations: Annotated[int, Field(ge=1, le=EVALUATIONS_MAX)] = 100
     """How many methods are tried."""
     sampler_seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     """Seed of the choice of methods."""

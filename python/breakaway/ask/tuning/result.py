@@ -2,82 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from breakaway.ask.studies.folder import SUMMARY, is_finished, read_summary
-from breakaway.ask.studies.manifest import MANIFEST, kind_of, read_manifest
-from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.durable.finished import DurableFolder
+from breakaway.ask.durable.manifest import TUNING
+from breakaway.ask.durable.records import Records
 from breakaway.ask.tuning.evaluation import Evaluation
 from breakaway.ask.tuning.problem import Tuning
-from breakaway.ask.tuning.records import TRIALS, Records
-from breakaway.base.reading import is_file
+from breakaway.ask.tuning.writing import EVALUATIONS
 from breakaway.errors import StudyError
 from breakaway.model.scenario.files import load_method
 from breakaway.model.scenario.method import Method
 
 
-class TuningResult:
+class TuningResult(DurableFolder):
     """A tuning in a folder, finished or not."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        """Where it is."""
-        self.manifest: Mapping[str, Any] = read_manifest(folder)
-        """What determines it: the tuning, seeds, versions."""
-        if kind_of(self.manifest) != "tuning":
-            kind = self.manifest["study"]["kind"]
-            raise StudyError(
-                f"{folder / MANIFEST}: is of a study of the kind {kind!r}; open it with open_study"
-            )
-        self._pieces = Pieces(folder, self.manifest["identity"])
+    _kind = TUNING
 
     def __repr__(self) -> str:
         state = "finished" if self.finished else "not finished"
-        return f"<tuning {self.tuning.name!r}, {len(self.evaluations)} trials, {state}>"
+        return f"<tuning {self.tuning.name!r}, {self._kept}, {state}>"
 
     @property
-    def finished(self) -> bool:
-        """Whether it came to its end, and its trials and the summary are as it wrote them."""
-        return is_finished(self._pieces)
+    def _kept(self) -> str:
+        return f"{len(self.evaluations)} evaluations"
 
     @cached_property
     def tuning(self) -> Tuning:
-        """What was asked, with as many trials as are finished."""
-        values = dict(self.manifest["study"])
-        return Tuning.parse(values | {"trials": max(1, len(self.evaluations))})
+        """What was asked, with as many evaluations as are finished."""
+        values = dict(self.manifest["asked"])
+        return Tuning.parse(values | {"evaluations": max(1, len(self.evaluations))})
 
     @cached_property
     def evaluations(self) -> list[Evaluation]:
-        """All finished trials: their numbers, and their scores under every law.
+        """All finished evaluations: their numbers, and their scores under every law.
 
         Raises
         ------
         StudyError
-            A trial is not as it was written.
+            An evaluation is not as it was written.
 
         """
-        records = Records(self.folder, TRIALS, self._pieces.identity)
+        records = Records(self.folder, EVALUATIONS, self._journal.identity)
         return [Evaluation.of_json(record) for record in records.read_whole()]
-
-    @property
-    def summary(self) -> dict[str, Any]:
-        """What was found: result, notes, front, scores on training and unseen parts.
-
-        Raises
-        ------
-        StudyError
-            The tuning is not finished, or its trials or the summary are not as it wrote them.
-
-        """
-        if not is_file(self.folder / SUMMARY):
-            raise StudyError(
-                f"{self.folder}: is not finished, {len(self.evaluations)} trials are; go on with "
-                "--resume"
-            )
-        return read_summary(self._pieces)
 
     @property
     def best(self) -> Method:
@@ -86,8 +56,8 @@ class TuningResult:
         Raises
         ------
         StudyError
-            The tuning is not finished, no trial met the constraints, or the method's file is not
-            as it was written.
+            The tuning is not finished, no evaluation met the constraints, or the method's file is
+            not as it was written.
 
         """
         return self._method(self._recommended["file"])
@@ -99,7 +69,7 @@ class TuningResult:
         Raises
         ------
         StudyError
-            The tuning is not finished, or no trial met the constraints.
+            The tuning is not finished, or no evaluation met the constraints.
 
         """
         numbers: dict[str, float] = self._recommended["numbers"]
@@ -118,7 +88,7 @@ class TuningResult:
         return [self._method(row["file"]) for row in self.summary["front"]]
 
     def _method(self, name: str) -> Method:
-        self._pieces.refuse_flawed(name)
+        self._journal.refuse_flawed(name)
         return load_method(self.folder / name)
 
     @property
@@ -152,7 +122,7 @@ def open_tuning(folder: str | Path) -> TuningResult:
     >>> open_tuning("nowhere")
     Traceback (most recent call last):
         ...
-    breakaway.errors.StudyError: nowhere: holds no study (manifest.json is missing); give ...
+    breakaway.errors.StudyError: nowhere: holds no tuning (manifest.json is missing); give ...
 
     """
-    return TuningResult(Path(folder))
+    return TuningResult(folder)

@@ -1,17 +1,20 @@
-"""Tune a method: trial after trial, each on the disk before the next begins."""
+"""Tune a method: evaluation after evaluation, each on the disk before the next begins."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from breakaway._core import __version__
-from breakaway.ask.studies.folder import SUMMARY, prepared
-from breakaway.ask.studies.manifest import FORMAT, MANIFEST, identity_of
-from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.durable.arguments import as_folder, check_options
+from breakaway.ask.durable.finished import SUMMARY
+from breakaway.ask.durable.journal import Journal
+from breakaway.ask.durable.manifest import MANIFEST, manifest_with
+from breakaway.ask.durable.progress import Progress
+from breakaway.ask.durable.records import Records
+from breakaway.ask.durable.resume import prepared
+from breakaway.ask.durable.runner import Runner
 from breakaway.ask.tuning.evaluation import (
     Evaluation,
     Laws,
@@ -21,47 +24,39 @@ from breakaway.ask.tuning.evaluation import (
     recommended,
     run_laws,
 )
-from breakaway.ask.tuning.problem import TRIALS_MAX, Tuning
-from breakaway.ask.tuning.records import TRIALS, UNSEEN, Records
+from breakaway.ask.tuning.problem import EVALUATIONS_MAX, Tuning
 from breakaway.ask.tuning.result import TuningResult, open_tuning
 from breakaway.ask.tuning.scores import laws_as_json, laws_of_json
 from breakaway.ask.tuning.search import Search
 from breakaway.ask.tuning.summary import Found
-from breakaway.ask.tuning.writing import write_end
+from breakaway.ask.tuning.writing import EVALUATIONS, UNSEEN, write_end
 from breakaway.base.reading import is_there
-from breakaway.base.threads import thread_count
-from breakaway.errors import OutputError, StudyError
+from breakaway.base.text import shown
+from breakaway.errors import StudyError
 from breakaway.model.scenario.method import Method
 
 START = "start"
-"""What stands for the method as it was among the trials that are scored."""
+"""What stands for the method as it was among the evaluations that are scored."""
 
 
-@dataclass(frozen=True)
-class TuningProgress:
-    """How far a tuning is."""
+@dataclass(frozen=True, kw_only=True)
+class TuningProgress(Progress):
+    """How far a tuning is; its runs are parts, of which the last ones are on unseen parts."""
 
-    trials_done: int
-    """Trials that are finished, those found on disk among them."""
-    trials_max: int
-    """Trials in all."""
-    runs_done: int
-    """Parts that are done, those found on disk among them."""
-    runs_found: int
-    """Parts that were found on disk, done by an earlier process."""
-    runs_max: int
-    """Parts in all, as far as is known: how many methods are scored on unseen ones, is not."""
-    doing: str
-    """What is run, in words."""
+    evaluations_done: int
+    """Evaluations that are finished, those found on disk among them."""
+    evaluations_max: int
+    """Evaluations in all."""
     best: Mapping[str, float] = field(default_factory=dict)
-    """Objectives of the trial that would be recommended now, on training parts; maybe none yet."""
+    """Objectives of the evaluation that would be recommended now, on training parts; maybe none
+    yet."""
 
 
 def tune(
     tuning: Tuning,
-    out: str | Path,
     *,
-    trials: int | None = None,
+    out: str | Path,
+    evaluations: int | None = None,
     resume: bool = False,
     threads: int | None = None,
     progress: Callable[[TuningProgress], None] | None = None,
@@ -69,9 +64,9 @@ def tune(
 ) -> TuningResult:
     """Tune a method on training parts into a folder, and score what was found on unseen ones.
 
-    Every trial is on the disk before the next begins. A tuning that was ended, in whatever way,
-    goes on with ``resume``, also with more trials than before, and all files are the same bytes
-    as those of a tuning that was never ended, on any number of threads.
+    Every evaluation is on the disk before the next begins. A tuning that was ended, in whatever
+    way, goes on with ``resume``, also with more evaluations than before, and all files are the same
+    bytes as those of a tuning that was never ended, on any number of threads.
 
     Parameters
     ----------
@@ -79,7 +74,7 @@ def tune(
         What is asked.
     out : str or Path
         The folder; made if it is missing.
-    trials : int, optional
+    evaluations : int, optional
         How many methods are tried. Left out: as the tuning says.
     resume : bool, optional
         Whether to go on with the tuning that the folder holds. Without one, it begins.
@@ -88,7 +83,7 @@ def tune(
     progress : callable, optional
         Called about 20 times a second with a `TuningProgress`.
     notice : callable, optional
-        Called with a sentence when trials on disk are damaged and tried again.
+        Called with a sentence when evaluations on disk are damaged and computed again.
 
     Returns
     -------
@@ -97,11 +92,12 @@ def tune(
     Raises
     ------
     StudyError
-        optuna is not installed, or the folder holds another tuning; nothing has run then.
+        optuna is not installed, an option is not valid, or the folder holds another tuning;
+        nothing has run then.
     OutputError
-        The folder can not be written, or the disk is full; finished trials stay.
+        The folder can not be written, or the disk is full; finished evaluations stay.
     KeyboardInterrupt
-        Ctrl-C; finished trials stay.
+        Ctrl-C; finished evaluations stay.
 
     Examples
     --------
@@ -117,118 +113,109 @@ def tune(
     ...     test_runs={"first": 100, "runs": 4},
     ... )
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     bk.tune(tuning, folder, trials=2).summary["trials"]
+    ...     bk.tune(tuning, out=folder, evaluations=2).summary["evaluations"]
     2
 
     """
-    _check_counts(trials, threads)
-    asked = tuning if trials is None else tuning.model_copy(update={"trials": trials})
+    check_options(resume=resume, threads=threads, progress=progress, notice=notice)
+    folder = as_folder("out", out)
+    asked = _asked(tuning, evaluations)
     search = Search(asked)
-    folder = Path(out)
     if resume:
         _check_found(folder, asked)
-    with prepared(folder, manifest_of(asked), resume=resume) as pieces:
-        runner = _Runner(asked, pieces, threads, progress, notice)
-        try:
-            write_end(runner.run(search), pieces)
-        except OutputError as error:
-            raise OutputError(f"{error}; finished trials stay: resume it to go on") from None
+    with prepared(folder, manifest_of(asked), resume=resume) as journal:
+        runner = _EvaluationRunner(asked, journal, threads, progress, notice)
+        write_end(runner.run(search), journal)
     return open_tuning(folder)
 
 
-def _check_counts(trials: int | None, threads: int | None) -> None:
-    thread_count(threads)
-    if trials is None:
-        return
-    if isinstance(trials, bool) or not isinstance(trials, int) or not 1 <= trials <= TRIALS_MAX:
-        raise StudyError(f"trials: {trials!r} is not a whole number >= 1 and <= {TRIALS_MAX}")
+def _asked(tuning: object, evaluations: object) -> Tuning:
+    """Give the tuning with as many evaluations as are asked for."""
+    if not isinstance(tuning, Tuning):
+        raise StudyError(f"tuning: {shown(tuning)} is not a Tuning; load one with load_tuning")
+    if evaluations is None:
+        return tuning
+    if type(evaluations) is not int or not 1 <= evaluations <= EVALUATIONS_MAX:
+        raise StudyError(
+            f"evaluations: {shown(evaluations)} is not a whole number >= 1 and <= {EVALUATIONS_MAX}"
+        )
+    return tuning.model_copy(update={"evaluations": evaluations})
 
 
 def _check_found(folder: Path, tuning: Tuning) -> None:
-    """Raise if the folder holds more trials than are asked for."""
+    """Raise if the folder holds more evaluations than are asked for."""
     if not is_there(folder / MANIFEST):
         return
-    found = len(Records(folder, TRIALS, manifest_of(tuning)["identity"]).read())
-    if found > tuning.trials:
+    found = len(Records(folder, EVALUATIONS, manifest_of(tuning)["identity"]).read())
+    if found > tuning.evaluations:
         raise StudyError(
-            f"trials: {tuning.trials} is less than the {found} that {folder} holds; give at least "
-            f"{found}, or another folder"
+            f"evaluations: {tuning.evaluations} is less than the {found} that {folder} holds; give "
+            f"at least {found}, or another folder"
         )
 
 
 def manifest_of(tuning: Tuning) -> dict[str, Any]:
-    """Give what determines the results of a tuning. How many trials it has is not part of it."""
-    manifest = {
-        "format": FORMAT,
-        "breakaway_version": __version__,
-        "libraries": {name: version(name) for name in ("numpy", "optuna", "scipy")},
-        "study": tuning.model_dump(mode="json", exclude={"trials"}),
-    }
-    return manifest | {"identity": identity_of(manifest)}
+    """Give what determines the results of a tuning; how many evaluations is not part of it."""
+    asked = tuning.model_dump(mode="json", exclude={"evaluations"})
+    return manifest_with(asked, ["numpy", "optuna", "scipy"])
 
 
-class _Runner:
-    """Runs trials and scores, but for those that are on disk."""
+class _EvaluationRunner:
+    """Runs evaluations and scores, but for those that are on disk."""
 
     def __init__(
         self,
         tuning: Tuning,
-        pieces: Pieces,
+        journal: Journal,
         threads: int | None,
         progress: Callable[[TuningProgress], None] | None,
         notice: Callable[[str], None] | None,
     ) -> None:
-        self._tuning, self._pieces, self._threads = tuning, pieces, threads
-        self._progress, self._notice = progress, notice
-        self._trials, self._scored = (
-            Records(pieces.folder, name, pieces.identity) for name in (TRIALS, UNSEEN)
+        self._tuning, self._journal, self._threads = tuning, journal, threads
+        self._progress = progress
+        self._evaluations, self._scored = (
+            Records(journal.folder, name, journal.identity) for name in (EVALUATIONS, UNSEEN)
         )
         self._done: list[Evaluation] = []
         self._best: dict[str, float] = {}
-        self._runs_done, self._runs_found = 0, 0
-        self._runs_max = tuning.trials * self._runs_of(tuning.training)
+        self._runner = Runner(
+            journal,
+            "tuning",
+            runs_max=tuning.evaluations * self._runs_of(tuning.training),
+            progress=self._tell,
+            notice=notice,
+        )
 
     def run(self, search: Search) -> Found:
         """Run what is not on disk, and give all."""
-        kept = self._intact(self._trials)
-        if len(kept) < self._tuning.trials:
-            self._pieces.remove(SUMMARY)  # it is not finished any more
-        for number in range(self._tuning.trials):
+        kept = self._evaluations.intact(self._runner.say)
+        if len(kept) < self._tuning.evaluations:
+            self._journal.remove(SUMMARY)  # it is not finished any more
+        for number in range(self._tuning.evaluations):
             evaluation = self._evaluation(number, search.ask(), kept)
             search.tell(evaluation)
             self._done.append(evaluation)
             self._note_best(evaluation)
         return self._scored_on_unseen()
 
-    def _intact(self, records: Records) -> list[dict[str, Any]]:
-        """Give the records of a file, after what is damaged was taken off."""
-        kept = records.read()
-        if len(kept) < records.lines():
-            self._say(
-                f"{records.path.name}: line {len(kept) + 1} was not finished, or is not as it was "
-                "written; it and what follows is computed again"
-            )
-            records.replace(kept)
-        return kept
-
     def _evaluation(
         self, number: int, numbers: dict[str, float], kept: list[dict[str, Any]]
     ) -> Evaluation:
+        self._runner.doing = f"evaluation {number + 1} of {self._tuning.evaluations}"
+        runs = self._runs_of(self._tuning.training)
         if number < len(kept):
             if (kept[number]["number"], kept[number]["numbers"]) == (number, numbers):
-                found = Evaluation.of_json(kept[number])
-                self._count(self._tuning.training, found=True)
-                return found
-            self._say(
-                f"{self._trials.path.name}: trial {number} is another one; it and what follows is "
-                "tried again"
+                self._runner.count(runs, found=True)
+                return Evaluation.of_json(kept[number])
+            self._runner.say(
+                f"{self._evaluations.path.name}: evaluation {number} is another one; it and what "
+                "follows is computed again"
             )
             del kept[number:]
-            self._trials.replace(kept)
-        self._doing = f"trial {number + 1} of {self._tuning.trials}"
-        evaluation = evaluate(self._tuning, number, numbers, self._threads, self._report)
-        self._trials.append(evaluation.as_json())
-        self._count(self._tuning.training)
+            self._evaluations.replace(kept)
+        evaluation = evaluate(self._tuning, number, numbers, self._threads, self._runner.report)
+        self._evaluations.append(evaluation.as_json())
+        self._runner.count(runs)
         return evaluation
 
     def _note_best(self, evaluation: Evaluation) -> None:
@@ -241,19 +228,19 @@ class _Runner:
         front = pareto_front(tuning, self._done)
         same = [e for e in self._done if e.numbers == tuning.start and e.laws is not None]
         parts = (len(front) + 1) * self._runs_of(unseen)
-        self._runs_max += parts + (0 if same else self._runs_of(tuning.training))
-        kept = self._intact(self._scored)
+        self._runner.runs_max += parts + (0 if same else self._runs_of(tuning.training))
+        kept = self._scored.intact(self._runner.say)
         asked: list[dict[str, Any]] = []
 
         def scored(of: int | str, method: Method, on: str, runs: range, doing: str) -> Laws:
             key = {"of": of, "on": on}
+            self._runner.doing = doing
             record = next((r for r in kept if r | key == r), None)
             if record is None:
-                self._doing = doing
-                laws = run_laws(tuning, method, runs, self._threads, self._report)
+                laws = run_laws(tuning, method, runs, self._threads, self._runner.report)
                 record = key | {"laws": laws_as_json(laws)}
                 self._scored.append(record)
-            self._count(runs, found=record in kept)
+            self._runner.count(self._runs_of(runs), found=record in kept)
             asked.append(record)
             return laws_of_json(record["laws"])
 
@@ -267,7 +254,7 @@ class _Runner:
                 tuning.tuned(e.numbers),
                 "unseen",
                 unseen,
-                f"trial {e.number} on unseen parts",
+                f"evaluation {e.number} on unseen parts",
             )
             for e in front
         }
@@ -278,26 +265,13 @@ class _Runner:
     def _runs_of(self, parts: range) -> int:
         return len(parts) * len(self._tuning.laws)
 
-    def _count(self, parts: range, *, found: bool = False) -> None:
-        self._runs_done += self._runs_of(parts)
-        self._runs_found += self._runs_of(parts) if found else 0
-        if not found:
-            self._report(0)
-
-    def _report(self, runs: int) -> None:
+    def _tell(self, at: Progress) -> None:
         if self._progress:
             self._progress(
                 TuningProgress(
-                    trials_done=len(self._done),
-                    trials_max=self._tuning.trials,
-                    runs_done=self._runs_done + runs,
-                    runs_found=self._runs_found,
-                    runs_max=self._runs_max,
-                    doing=self._doing,
+                    **vars(at),
+                    evaluations_done=len(self._done),
+                    evaluations_max=self._tuning.evaluations,
                     best=self._best,
                 )
             )
-
-    def _say(self, sentence: str) -> None:
-        if self._notice:
-            self._notice(sentence)

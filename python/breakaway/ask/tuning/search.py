@@ -1,4 +1,4 @@
-"""Which method is tried next: optuna's sampler, asked and told, one trial after the other."""
+"""Which method is tried next: optuna's sampler, asked and told, one evaluation after the other."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from breakaway.errors import StudyError
 REFUSED = 1e3
 """Violation of a method that no scenario takes: farther off than any that was tried."""
 STARTUP_MIN = 10
-"""Fewest trials before the sampler learns; twice as many as tuned numbers if that is more."""
+"""Fewest evaluations before the sampler learns; twice as many as tuned numbers if that is more."""
 
 
 class Search:
     """Proposes numbers of a method, and learns from what became of them.
 
     The sampler is TPE: multivariate for one objective, number by number for several. With two
-    objectives, twelve numbers of timed impacts, 40 and 80 trials and three seeds, the latter's
+    objectives, twelve numbers of timed impacts, 40 and 80 evaluations and three seeds, the latter's
     fronts had the largest hypervolume in every case, before the multivariate one and NSGA-II. The
     first generations of that are random draws, and it did not do better than drawing all. It
     lives in memory; since what it proposes depends on its seed and on what it was told alone,

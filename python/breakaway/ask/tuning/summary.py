@@ -28,17 +28,17 @@ class Found:
     tuning: Tuning
     """What was asked."""
     evaluations: Sequence[Evaluation]
-    """All trials."""
+    """All evaluations."""
     front: Sequence[Evaluation]
-    """Trials that none is better than, best in the first objective first."""
+    """Evaluations that none is better than, best in the first objective first."""
     best: Evaluation | None
-    """The recommended one; None where no trial met the constraints."""
+    """The recommended one; None where no evaluation met the constraints."""
     start_training: Laws
     """The method as it was, on the training parts."""
     start_unseen: Laws
     """The method as it was, on unseen parts."""
     unseen: Mapping[int, Laws]
-    """The front on unseen parts, by number of the trial."""
+    """The front on unseen parts, by number of the evaluation."""
 
     def file(self, evaluation: Evaluation) -> str:
         """Give the name of the file of a point of the front."""
@@ -51,11 +51,11 @@ class Found:
         return worst_of(self.tuning.kinds, laws)
 
 
-def trial_rows(found: Found) -> list[Row]:
-    """Give a row for each trial: its numbers, its scores, and what became of it."""
+def evaluation_rows(found: Found) -> list[Row]:
+    """Give a row for each evaluation: its numbers, its scores, and what became of it."""
     rows = []
     for evaluation in found.evaluations:
-        row: Row = {"trial": evaluation.number, "state": _state(found.tuning, evaluation)}
+        row: Row = {"evaluation": evaluation.number, "state": _state(found.tuning, evaluation)}
         row |= {
             "front": evaluation in found.front,
             "recommended": evaluation is found.best,
@@ -85,7 +85,7 @@ def pareto_rows(found: Found) -> list[Row]:
     for point, evaluation in enumerate(found.front, 1):
         row: Row = {
             "point": point,
-            "trial": evaluation.number,
+            "evaluation": evaluation.number,
             "recommended": evaluation is found.best,
             "file": found.file(evaluation),
             **evaluation.numbers,
@@ -111,7 +111,7 @@ def score_rows(found: Found) -> list[Row]:
     """Give every score of the start and of the front, on both sets of parts, under every law."""
     sets = [("start", "training", found.start_training), ("start", "unseen", found.start_unseen)]
     for evaluation in found.front:
-        name = f"trial {evaluation.number}"
+        name = f"evaluation {evaluation.number}"
         sets += [
             (name, "training", evaluation.laws or {}),
             (name, "unseen", found.unseen[evaluation.number]),
@@ -201,9 +201,9 @@ def sentences(found: Found) -> list[str]:
     tuning, best = found.tuning, found.best
     if best is None:
         return [_nothing(found)]
-    count = f"{len(found.evaluations)} trials"
+    count = f"{len(found.evaluations)} evaluations"
     said = [
-        f"trial {best.number} of {count} is recommended"
+        f"evaluation {best.number} of {count} is recommended"
         + (f", one of {len(found.front)} that none is better than" if len(found.front) > 1 else "")
         + ("; it is the method as it was" if best.numbers == tuning.start else "")
     ]
@@ -239,7 +239,9 @@ def _nothing(found: Found) -> str:
     tried = [e for e in found.evaluations if e.laws is not None]
     if not tried:
         last = found.evaluations[-1].refused
-        return f"every one of {len(found.evaluations)} trials was refused, the last one: {last}"
+        return (
+            f"every one of {len(found.evaluations)} evaluations was refused, the last one: {last}"
+        )
 
     def far(evaluation: Evaluation) -> float:
         return sum(violations_of(found.tuning, evaluation).values())
@@ -247,9 +249,9 @@ def _nothing(found: Found) -> str:
     nearest = min(tried, key=far)
     missed = [name for name, v in violations_of(found.tuning, nearest).items() if v]
     return (
-        f"none of {len(found.evaluations)} trials met all constraints, so that none is "
-        f"recommended; the nearest is trial {nearest.number}, which misses {', '.join(missed)}: "
-        "loosen it, or try more"
+        f"none of {len(found.evaluations)} evaluations met all constraints, so that none is "
+        f"recommended; the nearest is evaluation {nearest.number}, which misses "
+        f"{', '.join(missed)}: loosen it, or try more"
     )
 
 
@@ -266,10 +268,10 @@ def notes(found: Found) -> list[str]:
     if len(found.front) > 1:
         said.append(RULE)
     if tuning.start is None:
-        said.append("the method as it was is outside the ranges, and was none of the trials")
+        said.append("the method as it was is outside the ranges, and was none of the evaluations")
     refused = sum(evaluation.laws is None for evaluation in found.evaluations)
     if refused:
-        said.append(f"{refused} trials were refused by a scenario; trials.csv says why")
+        said.append(f"{refused} evaluations were refused by a scenario; evaluations.csv says why")
     return said
 
 
@@ -287,14 +289,14 @@ def content_of(found: Found) -> Row:
         "sampler_seed": tuning.sampler_seed,
         "training_parts": [0, tuning.training_runs],
         "unseen_parts": [tuning.test_runs.numbers.start, tuning.test_runs.numbers.stop],
-        "trials": len(found.evaluations),
+        "evaluations": len(found.evaluations),
         **{state: states.count(state) for state in ("feasible", "infeasible", "refused")},
         "breakaway_version": __version__,
         "confidence": tuning.confidence,
         "result": sentences(found),
         "notes": notes(found),
         "recommended": best
-        and {"trial": best.number, "file": "best.toml", "numbers": dict(best.numbers)},
+        and {"evaluation": best.number, "file": "best.toml", "numbers": dict(best.numbers)},
         "overfitting": overfitting_rows(found),
         "front": pareto_rows(found),
         "scores": score_rows(found),

@@ -7,43 +7,47 @@ from pathlib import Path
 
 import tomli_w
 
-from breakaway.ask.studies.folder import SUMMARY, as_csv, as_json
-from breakaway.ask.studies.pieces import Pieces
+from breakaway.ask.durable.documents import as_csv, as_json
+from breakaway.ask.durable.finished import SUMMARY
+from breakaway.ask.durable.journal import PIECES, Journal
 from breakaway.ask.tuning.evaluation import Evaluation
-from breakaway.ask.tuning.records import RECORDS
-from breakaway.ask.tuning.summary import Found, Row, content_of, pareto_rows, trial_rows
+from breakaway.ask.tuning.summary import Found, Row, content_of, evaluation_rows, pareto_rows
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
 from breakaway.base.text import toml_comment
 from breakaway.model.scenario.method import Method
 
+EVALUATIONS, UNSEEN = RECORDS = (f"{PIECES}/evaluations.jsonl", f"{PIECES}/unseen.jsonl")
+"""Finished evaluations, and scores on unseen parts."""
 BEST = "best.toml"
 """The recommended method."""
 POINT = re.compile(r"best\.toml|pareto_\d{2,}\.toml")
 """Files that a point of the front can have."""
 
 
-def write_end(found: Found, pieces: Pieces) -> None:
+def write_end(found: Found, journal: Journal) -> None:
     """Write tables, methods, figures, and last the summary, which says that it is done."""
     content = content_of(found)
     methods = {found.file(evaluation): evaluation for evaluation in found.front}
     if found.best is not None:
         methods[BEST] = found.best
-    with output_folder(pieces.folder, STUDY) as staging:
-        (staging / "trials.csv").write_text(as_csv(trial_rows(found)), "utf-8", newline="")
+    with output_folder(journal.folder, STUDY) as staging:
+        (staging / "evaluations.csv").write_text(
+            as_csv(evaluation_rows(found)), "utf-8", newline=""
+        )
         (staging / "pareto.csv").write_text(as_csv(pareto_rows(found)), "utf-8", newline="")
         for name, evaluation in methods.items():
             text = method_toml(found, evaluation, name)
             (staging / name).write_text(text, "utf-8", newline="\n")
         _draw(found, staging, content)
-        names = pieces.note_staged(staging)
-    for name in pieces.names():
-        if POINT.fullmatch(name) and name not in methods:  # of fewer trials than now
-            pieces.remove(name)
+        names = journal.note_staged(staging)
+    for name in journal.names():
+        if POINT.fullmatch(name) and name not in methods:  # of fewer evaluations than now
+            journal.remove(name)
     for name in RECORDS:
-        pieces.note_written(name)
-    pieces.write(SUMMARY, as_json(content))
-    pieces.settle([*names, *RECORDS, SUMMARY])
+        journal.note_written(name)
+    journal.write(SUMMARY, as_json(content))
+    journal.settle([*names, *RECORDS, SUMMARY])
 
 
 def method_toml(found: Found, evaluation: Evaluation, file: str) -> str:
@@ -55,7 +59,7 @@ def method_toml(found: Found, evaluation: Evaluation, file: str) -> str:
     said = [
         f"# {toml_comment(tuning.method.name)}, tuned on {tuning.training_runs} parts of "
         f"{toml_comment(tuning.population.name)}, laws {', '.join(tuning.laws)}:",
-        f"# trial {evaluation.number} of {len(found.evaluations)}.",
+        f"# evaluation {evaluation.number} of {len(found.evaluations)}.",
         "# Training and unseen scores:",
         *(
             f"#   {name} {evaluation.worst[name].value:.5g}, {unseen[name].value:.5g}"
@@ -71,7 +75,7 @@ def _draw(found: Found, staging: Path, content: Row) -> None:
     from breakaway.show.plots.style import save_figure
     from breakaway.show.plots.tuning import plot_history, plot_pareto, plot_slices
 
-    tuning, rows = found.tuning, trial_rows(found)
+    tuning, rows = found.tuning, evaluation_rows(found)
     start = found.worst(found.start_training)
     before = {name: start[name].value for name in tuning.objectives}
     less = {kind.name: not kind.more_is_better for kind in tuning.objective_kinds}

@@ -26,12 +26,12 @@ NOT_MET = "constraint not met"
 DECADES = 60.0
 """Largest span of a logarithmic axis that is marked at 1, 2 and 5."""
 RANKED_MIN = 5
-"""Fewest trials whose rank correlation is told."""
+"""Fewest evaluations whose rank correlation is told."""
 
 
 def plot_pareto(
     title: str,
-    trials: Sequence[Row],
+    evaluations: Sequence[Row],
     front: Sequence[Row],
     less_is_better: Mapping[str, bool],
     start: Mapping[str, float],
@@ -42,10 +42,10 @@ def plot_pareto(
     ----------
     title : str
         Name of the tuning.
-    trials : sequence of mapping
-        One row for each trial.
+    evaluations : sequence of mapping
+        One row for each evaluation.
     front : sequence of mapping
-        One row for each trial that none is better than, best in the first objective first.
+        One row for each evaluation that none is better than, best in the first objective first.
     less_is_better : mapping
         For each objective, by name, whether less of it is better.
     start : mapping
@@ -60,7 +60,7 @@ def plot_pareto(
             # No point between two of the front was reached: steps, not slopes, join them.
             steps = "steps-post" if less_is_better[other] else "steps-pre"
             line = steps if len(others) == 1 else None
-            _front(axes, trials, front, (other, first), start, line)
+            _front(axes, evaluations, front, (other, first), start, line)
             axes.set_xlabel(f"{axes.get_xlabel()}; {_better(less_is_better[other])}")
             axes.set_ylabel(f"{axes.get_ylabel()}; {_better(less_is_better[first])}")
         panels[0].legend(
@@ -71,20 +71,23 @@ def plot_pareto(
             columnspacing=1.0,
             handletextpad=0.3,
         )
-        _title(figure, f"{title}: {len(front)} of {len(trials)} trials that none is better than")
+        _title(
+            figure,
+            f"{title}: {len(front)} of {len(evaluations)} evaluations that none is better than",
+        )
     return figure
 
 
 def _front(
     axes: Axes,
-    trials: Sequence[Row],
+    evaluations: Sequence[Row],
     front: Sequence[Row],
     names: tuple[str, str],
     start: Mapping[str, float],
     steps: str | None,
 ) -> None:
-    """Draw trials, front and start; steps join a front that is a line."""
-    factors = [_factor(trials, name) for name in names]
+    """Draw evaluations, front and start; steps join a front that is a line."""
+    factors = [_factor(evaluations, name) for name in names]
 
     def places(rows: Sequence[Row], suffix: str = "") -> list[Array]:
         return [
@@ -92,8 +95,8 @@ def _front(
             for name, (factor, _) in zip(names, factors, strict=True)
         ]
 
-    for state, marker, label in (("feasible", "o", "trial"), ("infeasible", "x", NOT_MET)):
-        rows = [row for row in trials if row["state"] == state]
+    for state, marker, label in (("feasible", "o", "evaluation"), ("infeasible", "x", NOT_MET)):
+        rows = [row for row in evaluations if row["state"] == state]
         if rows:
             axes.plot(*places(rows), marker, markersize=3.5, color=COLORS["reference"], label=label)
     _points(axes, front, places(front, "_training"), places(front, "_unseen"), steps)
@@ -130,15 +133,17 @@ def _better(less: bool) -> str:
     return "less is better" if less else "more is better"
 
 
-def plot_history(title: str, trials: Sequence[Row], less_is_better: Mapping[str, bool]) -> Figure:
-    """Draw every objective trial by trial, and the best of those that meet the constraints.
+def plot_history(
+    title: str, evaluations: Sequence[Row], less_is_better: Mapping[str, bool]
+) -> Figure:
+    """Draw every objective in the order of evaluation, and the best that meets the constraints.
 
     Parameters
     ----------
     title : str
         Name of the tuning.
-    trials : sequence of mapping
-        One row for each trial.
+    evaluations : sequence of mapping
+        One row for each evaluation.
     less_is_better : mapping
         For each objective, by name, whether less of it is better.
 
@@ -147,19 +152,19 @@ def plot_history(title: str, trials: Sequence[Row], less_is_better: Mapping[str,
         figure = house_figure(height=0.9 + 1.9 * len(less_is_better))
         panels = np.atleast_1d(figure.subplots(len(less_is_better), 1, sharex=True))
         for axes, (name, less) in zip(panels, less_is_better.items(), strict=True):
-            _history(axes, trials, name, less)
-        panels[-1].set_xlabel("trial")
+            _history(axes, evaluations, name, less)
+        panels[-1].set_xlabel("evaluation")
         panels[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
         panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, borderaxespad=0.1)
         figure.align_ylabels()
-        _title(figure, f"{title}: objectives on the training parts, trial by trial")
+        _title(figure, f"{title}: objectives on the training parts, in the order of evaluation")
     return figure
 
 
-def _history(axes: Axes, trials: Sequence[Row], name: str, less: bool) -> None:
-    factor, unit = _factor(trials, name)
-    number, value = _column(trials, "trial"), _column(trials, name) * factor
-    state = np.array([row["state"] for row in trials])
+def _history(axes: Axes, evaluations: Sequence[Row], name: str, less: bool) -> None:
+    factor, unit = _factor(evaluations, name)
+    number, value = _column(evaluations, "evaluation"), _column(evaluations, name) * factor
+    state = np.array([row["state"] for row in evaluations])
     feasible = (state == "feasible") & np.isfinite(value)
     for chosen, marker, label in (
         (feasible, "o", "constraints met"),
@@ -200,21 +205,21 @@ def _history(axes: Axes, trials: Sequence[Row], name: str, less: bool) -> None:
 
 def plot_slices(
     title: str,
-    trials: Sequence[Row],
+    evaluations: Sequence[Row],
     objective: str,
     spans: Mapping[str, tuple[float, float, bool]],
 ) -> Figure:
     """Draw an objective over each tuned number, with the rank correlation of both.
 
-    Later trials are darker: where they gather, the search saw promise. A rank correlation near
+    Later evaluations are darker: where they gather, the search saw promise. A rank correlation near
     0 means little effect, or one that is not monotonic.
 
     Parameters
     ----------
     title : str
         Name of the tuning.
-    trials : sequence of mapping
-        One row for each trial.
+    evaluations : sequence of mapping
+        One row for each evaluation.
     objective : str
         Name of the objective.
     spans : mapping
@@ -224,7 +229,7 @@ def plot_slices(
     """
     rows = ceil(len(spans) / COLUMNS)
     columns = min(COLUMNS, len(spans))
-    shown = [row for row in trials if row[objective] is not None]
+    shown = [row for row in evaluations if row[objective] is not None]
     factor, unit = _factor(shown, objective)
     with house_style():
         figure = house_figure(height=0.9 + 1.75 * rows)
@@ -238,7 +243,7 @@ def plot_slices(
         _title(
             figure,
             f"{title}: {_label(objective, unit)} over each tuned number, ρ its rank correlation; "
-            "later trials are darker, × does not meet a constraint, the ring is recommended",
+            "later evaluations are darker, × does not meet a constraint, the ring is recommended",
         )
     return figure
 
@@ -250,7 +255,7 @@ def _slice(
     factor, unit = _scale(path, [low, high])
     place = _column(rows, path) * factor
     state = np.array([row["state"] for row in rows])
-    order = _column(rows, "trial")
+    order = _column(rows, "evaluation")
     for name, marker in (("infeasible", "x"), ("feasible", "o")):
         chosen = state == name
         axes.scatter(

@@ -1,7 +1,7 @@
 """The finished files of a folder, each with a digest, so that no other is taken for one of them.
 
-A digest covers the identity of the study, the name of the file and all its bytes: an edited file,
-one of another study, or one in the place of another has another digest. The digests stand in a
+A digest covers the identity of the work, the name of the file and all its bytes: an edited file,
+one of other work, or one in the place of another has another digest. The digests stand in a
 journal beside the manifest, a line each. A line is written before its file is: what a killed
 process leaves is at most a line without a file, never a file without a line.
 
@@ -21,12 +21,14 @@ from breakaway.base.ownership import refuse_links
 from breakaway.base.reading import open_regular
 from breakaway.errors import StudyError
 
+PIECES = "pieces"
+"""Folder of the pieces, within that of the work."""
 DIGESTS = "digests.txt"
 """The journal: a digest and a name in each line."""
 MOST_DIGESTS_BYTES = 256 * 2**20
 """Most bytes of a journal: two million files."""
-LINE = re.compile(r"([0-9a-f]{64})  ((?:parts/)?[^\s./\\][^/\\]*)")
-"""A digest, and a name in the folder or in that of its parts: nothing beyond is looked at."""
+LINE = re.compile(rf"([0-9a-f]{{64}})  ((?:{PIECES}/)?[^\s./\\][^/\\]*)")
+"""A digest, and a name in the folder or in that of its pieces: nothing beyond is looked at."""
 BLOCK_BYTES = 2**20
 MISSING = "is missing"
 
@@ -35,14 +37,14 @@ Signature = tuple[int, int, int]
 
 
 def digest_of(identity: str, name: str, content: bytes) -> str:
-    """Give the digest of a piece of a study.
+    """Give the digest of a finished file.
 
     Parameters
     ----------
     identity : str
-        Digest of all that determines the study.
+        Digest of all that determines the work.
     name : str
-        Place of the piece in it.
+        Place of the file in its folder.
     content : bytes
         What it holds.
 
@@ -61,14 +63,14 @@ def _begun(identity: str, name: str) -> hashlib._Hash:
     return hashlib.sha256(f"{identity}\n{name}\n".encode())
 
 
-class Pieces:
+class Journal:
     """The finished files of a folder."""
 
     def __init__(self, folder: Path, identity: str) -> None:
         self.folder = folder
         """Where they are."""
         self.identity = identity
-        """Digest of all that determines the study."""
+        """Digest of all that determines the work."""
         self._known: dict[str, str] = {}
         self._sound: dict[str, tuple[str, Signature]] = {}
         self.reread()

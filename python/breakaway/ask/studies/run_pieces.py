@@ -1,91 +1,84 @@
-"""The parts of a study in a folder: written whole, and read back."""
+"""The pieces of a study: columns of runs, written whole and read back."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
+from breakaway.ask.durable.pieces import as_bytes
 from breakaway.ask.studies.levels import Level
-from breakaway.ask.studies.part_files import as_bytes, part_name
-from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.studies.points import Point
 from breakaway.model.units import unit_of
 from breakaway.run.batch.batch import Batch
 
 LARGE = 1000
-"""Fewest runs of a piece whose columns are read one by one."""
+"""Fewest runs of a stretch whose columns are read one by one."""
 
 
 @dataclass(frozen=True)
-class Piece:
-    """Some runs of one point within a part."""
+class Stretch:
+    """Some runs of one point within a piece."""
 
     point: int
     """Number of the point."""
     rows: range
     """Its runs, counted from the first of the point."""
     offset: int
-    """Row of the part where they start."""
+    """Row of the piece where they start."""
 
 
 def laid_out(
-    points: Sequence[Point], first_point: int, runs_per_part: int
-) -> Iterator[list[Piece]]:
-    """Lay points out into parts of equal length, the last one shorter.
+    points: Sequence[Point], first_point: int, runs_per_piece: int
+) -> Iterator[list[Stretch]]:
+    """Lay points out into pieces of equal length, the last one shorter.
 
-    Small points share a part, and large ones take several.
+    Small points share a piece, and large ones take several.
     """
-    pieces: list[Piece] = []
+    stretches: list[Stretch] = []
     filled = 0
     for number, point in enumerate(points, first_point):
         start, count = 0, len(point.runs)
         while start < count:
-            taken = min(count - start, runs_per_part - filled)
-            pieces.append(Piece(number, range(start, start + taken), filled))
+            taken = min(count - start, runs_per_piece - filled)
+            stretches.append(Stretch(number, range(start, start + taken), filled))
             start, filled = start + taken, filled + taken
-            if filled == runs_per_part:
-                yield pieces
-                pieces, filled = [], 0
-    if pieces:
-        yield pieces
+            if filled == runs_per_piece:
+                yield stretches
+                stretches, filled = [], 0
+    if stretches:
+        yield stretches
 
 
-class Parts:
-    """The columns of a study's parts, and the files they are in."""
+class RunPieces:
+    """The columns of a study's pieces, and the files they are in."""
 
     def __init__(
         self,
-        pieces: Pieces,
+        folder: Path,
         labels: Mapping[str, str],
         varied: Sequence[str],
         metrics: Sequence[str],
     ) -> None:
-        self._pieces = pieces
-        self._schema = part_schema(labels, varied, metrics)
-        self._kept: tuple[int, Any] = (-1, None)
+        self._folder = folder
+        self._schema = piece_schema(labels, varied, metrics)
+        self._kept: tuple[str, Any] = ("", None)
 
-    def write(self, number: int, pieces: Sequence[tuple[Piece, Point, Batch]]) -> None:
-        """Write a part, whole or not at all.
-
-        Raises
-        ------
-        OutputError
-            The folder can not be written, or the disk is full.
-
-        """
+    def as_bytes(self, batches: Sequence[tuple[Stretch, Point, Batch]]) -> bytes:
+        """Give the file of a piece."""
         arrow: Any = import_module("pyarrow")
-        tables = [self._table(piece, point, batch) for piece, point, batch in pieces]
-        self._pieces.write(part_name(number), as_bytes(arrow.concat_tables(tables)))
+        tables = [self._table(stretch, point, batch) for stretch, point, batch in batches]
+        return as_bytes(arrow.concat_tables(tables))
 
-    def _table(self, piece: Piece, point: Point, batch: Batch) -> Any:  # noqa: ANN401 - no stubs
+    def _table(self, stretch: Stretch, point: Point, batch: Batch) -> Any:  # noqa: ANN401 - no stubs
         arrow: Any = import_module("pyarrow")
-        columns: dict[str, Any] = {"point": np.full(len(batch), piece.point, dtype=np.int32)}
+        columns: dict[str, Any] = {"point": np.full(len(batch), stretch.point, dtype=np.int32)}
         columns["run_index"] = batch.run_index
         columns |= {name: [label] * len(batch) for name, label in point.labels.items()}
         columns |= {**batch.varied, **batch.metrics}
@@ -99,33 +92,33 @@ class Parts:
         arrays.append(arrow.DictionaryArray.from_arrays(codes, list(OUTCOMES)))
         return arrow.Table.from_arrays(arrays, schema=self._schema)
 
-    def column(self, name: str, number: int, piece: Piece) -> NDArray[Any]:
-        """Read a column of a piece; outcomes as their places among the outcomes."""
-        values = self._read(number, name, piece).slice(piece.offset, len(piece.rows))
+    def column(self, name: str, piece: str, stretch: Stretch) -> NDArray[Any]:
+        """Read a column of a stretch of a piece; outcomes as their places among the outcomes."""
+        values = self._read(piece, name, stretch).slice(stretch.offset, len(stretch.rows))
         if name != "outcome":
             column: NDArray[Any] = values.to_numpy()
             return column
         chunks = [chunk.indices.to_numpy() for chunk in values.chunks]
         return np.concatenate(chunks)
 
-    def _read(self, number: int, name: str, piece: Piece) -> Any:  # noqa: ANN401 - no stubs
-        """Read a column of a part; of small points, which share it, the part is kept as a whole."""
+    def _read(self, piece: str, name: str, stretch: Stretch) -> Any:  # noqa: ANN401 - no stubs
+        """Read a column of a piece; one that small points share is kept as a whole."""
         parquet: Any = import_module("pyarrow.parquet")
-        path = self._pieces.folder / part_name(number)
-        if len(piece.rows) >= LARGE:
+        path = self._folder / piece
+        if len(stretch.rows) >= LARGE:
             return parquet.read_table(path, columns=[name], use_threads=False, partitioning=None)[
                 name
             ]
-        if self._kept[0] != number:
+        if self._kept[0] != piece:
             self._kept = (
-                number,
+                piece,
                 parquet.read_table(path, use_threads=False, partitioning=None),
             )
         return self._kept[1][name]
 
 
-def part_schema(labels: Mapping[str, str], varied: Sequence[str], metrics: Sequence[str]) -> Any:  # noqa: ANN401 - pyarrow has no type stubs
-    """Give the columns of a part: point and run, labels, what varies, metrics, outcome.
+def piece_schema(labels: Mapping[str, str], varied: Sequence[str], metrics: Sequence[str]) -> Any:  # noqa: ANN401 - pyarrow has no type stubs
+    """Give the columns of a piece: point and run, labels, what varies, metrics, outcome.
 
     Parameters
     ----------
@@ -138,7 +131,7 @@ def part_schema(labels: Mapping[str, str], varied: Sequence[str], metrics: Seque
 
     Examples
     --------
-    >>> part_schema({"disturbance.var": "double"}, [], ["peak_force_n"]).names
+    >>> piece_schema({"disturbance.var": "double"}, [], ["peak_force_n"]).names
     ['point', 'run_index', 'disturbance.var', 'peak_force_n', 'outcome']
 
     """

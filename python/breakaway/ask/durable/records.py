@@ -1,22 +1,19 @@
-"""Lines of JSON that outlive a kill: each is on the disk before the next thing is begun."""
+"""Records: lines of JSON, each of which is on the disk before the next thing is begun."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from breakaway.ask.studies.part_files import PARTS
-from breakaway.ask.studies.pieces import digest_of
+from breakaway.ask.durable.journal import digest_of
 from breakaway.base.output import append_inside, write_inside
 from breakaway.base.reading import open_regular
 from breakaway.errors import StudyError
 
-TRIALS, UNSEEN = RECORDS = (f"{PARTS}/trials.jsonl", f"{PARTS}/unseen.jsonl")
-"""Finished trials, and scores on unseen parts."""
 MOST_BYTES = 2**28
-"""Most bytes of a file: 10,000 trials have 40 MB."""
+"""Most bytes of a file: 10,000 evaluations of a tuning have 40 MB."""
 END = ', "sha256": "{}"}}'
 """End of each line: the digest of the identity, the place of the line, and all before it."""
 END_BYTES = len(END.format("0" * 64))
@@ -67,9 +64,25 @@ class Records:
             )
         return found
 
-    def lines(self) -> int:
-        """Count the lines, damaged and unfinished ones among them."""
-        return len(self._content().splitlines())
+    def intact(self, say: Callable[[str], None]) -> list[dict[str, Any]]:
+        """Give the records, after what is damaged was taken off the file; say what was.
+
+        Raises
+        ------
+        StudyError
+            The file can not be read.
+        OutputError
+            It can not be written.
+
+        """
+        kept = self.read()
+        if len(kept) < len(self._content().splitlines()):
+            say(
+                f"{self.path.name}: line {len(kept) + 1} was not finished, or is not as it was "
+                "written; it and what follows is computed again"
+            )
+            self.replace(kept)
+        return kept
 
     def append(self, record: Mapping[str, Any]) -> None:
         """Write a record to the disk.
