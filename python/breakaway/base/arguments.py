@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 
 from breakaway.base.text import brief, shown
-from breakaway.errors import BreakawayError, ScenarioError, StudyError
+from breakaway.errors import BreakawayError, StudyError
 
 Refusal = type[BreakawayError]
 """Class of the error that refuses an argument."""
@@ -25,10 +25,10 @@ def check_kind(
 
     Examples
     --------
-    >>> check_kind("mapping", 5, dict, "give a table of keys", ScenarioError)
+    >>> check_kind("mapping", 5, dict, "give a table of keys", StudyError)
     Traceback (most recent call last):
         ...
-    breakaway.errors.ScenarioError: mapping: 5 is not a dict; give a table of keys
+    breakaway.errors.StudyError: mapping: 5 is not a dict; give a table of keys
 
     """
     if isinstance(value, kinds):
@@ -43,12 +43,12 @@ def path_of(name: str, value: object, error: Refusal) -> Path:
 
     Examples
     --------
-    >>> path_of("path", "motor.csv", ScenarioError).suffix
+    >>> path_of("path", "motor.csv", StudyError).suffix
     '.csv'
-    >>> path_of("path", ["motor.csv"], ScenarioError)
+    >>> path_of("path", ["motor.csv"], StudyError)
     Traceback (most recent call last):
         ...
-    breakaway.errors.ScenarioError: path: ['motor.csv'] is not a path; give a str or a Path
+    breakaway.errors.StudyError: path: ['motor.csv'] is not a path; give a str or a Path
 
     """
     if not isinstance(value, str | PathLike):
@@ -73,10 +73,10 @@ def check_finite(name: str, value: object, error: Refusal) -> None:
 
     Examples
     --------
-    >>> check_finite("start_s", "0.5", ScenarioError)
+    >>> check_finite("start_s", "0.5", StudyError)
     Traceback (most recent call last):
         ...
-    breakaway.errors.ScenarioError: start_s: '0.5' is not a finite number; give a number
+    breakaway.errors.StudyError: start_s: '0.5' is not a finite number; give a number
 
     """
     if not (isinstance(value, Real) and is_number(value) and isfinite(value)):
@@ -95,25 +95,29 @@ def is_whole(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def check_whole(name: str, value: object, error: Refusal, low: int, high: int | None = None) -> None:
+def check_whole(
+    name: str, value: object, error: Refusal, low: int, high: int | None = None
+) -> None:
     """Refuse what is not a whole number from ``low`` to ``high``, both included.
 
     Examples
     --------
-    >>> check_whole("seed", -1, ScenarioError, 0)
+    >>> check_whole("seed", -1, StudyError, 0)
     Traceback (most recent call last):
         ...
-    breakaway.errors.ScenarioError: seed: -1 is not a whole number of at least 0
+    breakaway.errors.StudyError: seed: -1 is not a whole number of at least 0
 
     """
-    if isinstance(value, int) and is_whole(value) and low <= value:
-        if high is None or value <= high:
-            return
-    wanted = f"of at least {low}" if high is None else f"from {low} to {high}"
-    raise error(f"{name}: {shown(value)} is not a whole number {wanted}")
+    within = isinstance(value, int) and low <= value and (high is None or value <= high)
+    if not (within and is_whole(value)):
+        raise error(f"{name}: {shown(value)} is not a whole number {_between(low, high)}")
 
 
-def run_numbers(runs: object, *, fewest: int = 1) -> range:
+def _between(low: int, high: int | None) -> str:
+    return f"of at least {low}" if high is None else f"from {low} to {high}"
+
+
+def run_numbers(runs: object, *, fewest: int = 1, most: int | None = None) -> range:
     """Give the numbers of runs: so many from 0 on, or those of a range.
 
     Examples
@@ -123,7 +127,7 @@ def run_numbers(runs: object, *, fewest: int = 1) -> range:
     >>> run_numbers(0)
     Traceback (most recent call last):
         ...
-    breakaway.errors.StudyError: runs: 0 is not a whole number of at least 1 or a range ...
+    breakaway.errors.StudyError: runs: 0 is not a whole number of at least 1, nor a range ...
 
     """
     if isinstance(runs, int) and is_whole(runs):
@@ -132,10 +136,11 @@ def run_numbers(runs: object, *, fewest: int = 1) -> range:
         numbers = runs
     else:
         numbers = range(-1)
-    if numbers.stop - numbers.start < fewest:  # len() ends at 2^63
+    count = numbers.stop - numbers.start  # len() ends at 2^63
+    if count < fewest or (most is not None and count > most):
         raise StudyError(
-            f"runs: {shown(runs)} is not a whole number of at least {fewest} or a range of as "
-            "many, such as range(100, 200)"
+            f"runs: {shown(runs)} is not a whole number {_between(fewest, most)}, nor a range of "
+            "as many, such as range(100, 200)"
         )
     return numbers
 
@@ -145,10 +150,10 @@ def check_choice(name: str, value: object, known: Collection[str], error: Refusa
 
     Examples
     --------
-    >>> check_choice("real", "half", ("double", "float"), ScenarioError)
+    >>> check_choice("real", "half", ("double", "float"), StudyError)
     Traceback (most recent call last):
         ...
-    breakaway.errors.ScenarioError: real: 'half' is not one of double, float
+    breakaway.errors.StudyError: real: 'half' is not one of double, float
 
     """
     if not (isinstance(value, str) and value in known):

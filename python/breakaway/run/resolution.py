@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any, TypeVar
 
 from breakaway.design.pole_placement import pole_placement, residual_n
-from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import ForceActuator
 from breakaway.model.scenario.controller import (
     AnyController,
@@ -16,19 +15,12 @@ from breakaway.model.scenario.controller import (
     PolePlacement,
     TwoStep,
 )
+from breakaway.model.scenario.given import check_scenario
 from breakaway.model.scenario.joint import AnyJoint, CoulombStiction, ElastoPlastic, Gms
 from breakaway.model.scenario.model import Model
 from breakaway.model.scenario.scenario import Scenario
 
 AnyPart = TypeVar("AnyPart", bound=Model)
-
-
-def check_scenario(given: object) -> None:
-    """Refuse what is no scenario, such as the name of a preset."""
-    if not isinstance(given, Scenario):
-        raise ScenarioError(
-            f"scenario: {given!r} is not a Scenario; load_scenario gives that of a preset or a file"
-        )
 
 
 def resolve(scenario: Scenario) -> Scenario:
