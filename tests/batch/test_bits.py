@@ -336,7 +336,7 @@ def test_all_numbers_at_once(name, assert_same_bits, assert_same_batch):
     vary = vary_all(scenario, changeable(scenario), runs)
     batches = [
         bk.simulate_many(
-            scenario, runs, vary=vary, first_run=7, threads=threads, instructions=instructions
+            scenario, range(7, 7 + runs), vary=vary, threads=threads, instructions=instructions
         )
         for threads, instructions in zip(itertools.cycle(THREADS), INSTRUCTIONS, strict=False)
     ]
@@ -547,7 +547,7 @@ def test_outcomes_alone_know_limits_that_all_runs_share(limit):
 @pytest.mark.parametrize("first", [1, 2**32 - 3, 2**63 - 2])
 def test_first_run(quick, first, assert_same_bits):
     vary = {"joint.stiction_n": bk.Uniform(low=400.0, high=500.0)}
-    batch = bk.simulate_many(quick, 5, vary=vary, first_run=first)
+    batch = bk.simulate_many(quick, range(first, first + 5), vary=vary)
     assert batch.run_index.tolist() == list(range(first, first + 5))
     assert len(set(batch["iae_m_s"])) == 5
     assert_same_bits(batch)
@@ -565,7 +565,7 @@ def test_pieces_of_a_batch_are_the_batch(assert_same_batch, bits):
     whole = bk.simulate_many(scenario, 45, vary=vary)
     cuts = [0, 1, 4, 20, 37, 45]
     pieces = [
-        bk.simulate_many(scenario, stop - start, vary=vary, first_run=start, threads=threads)
+        bk.simulate_many(scenario, range(start, stop), vary=vary, threads=threads)
         for start, stop, threads in zip(cuts[:-1], cuts[1:], (1, 2, 5, 1, 2), strict=True)
     ]
     for name in whole.columns:
@@ -574,7 +574,7 @@ def test_pieces_of_a_batch_are_the_batch(assert_same_batch, bits):
             np.testing.assert_array_equal(together, whole[name])
         else:
             np.testing.assert_array_equal(bits(together), bits(whole[name]), err_msg=name)
-    assert_same_batch(pieces[2], bk.simulate_many(scenario, 16, vary=vary, first_run=4))
+    assert_same_batch(pieces[2], bk.simulate_many(scenario, range(4, 20), vary=vary))
 
 
 def test_arrays_and_draws_mix(quick, assert_same_bits):

@@ -71,7 +71,7 @@ def batch():
     gains = bk.resolve(scenario).controller.gains
     for name in ("kp_n_per_m", "ki_n_per_m_s", "kd_n_s_per_m"):
         vary[f"controller.gains.{name}"] = np.full(9, getattr(gains, name))
-    return bk.simulate_many(scenario, 9, vary=vary, first_run=100)
+    return bk.simulate_many(scenario, range(100, 109), vary=vary)
 
 
 @pytest.fixture(scope="module")

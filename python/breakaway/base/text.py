@@ -72,7 +72,7 @@ def terminal(text: str) -> str:
 
 
 def shown(value: object) -> str:
-    """Give a value for a message: as Python writes it, and not too long.
+    """Give a value for a message: as Python writes it, on one line, and not too long.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def shown(value: object) -> str:
     """
     if isinstance(value, str) and len(value) > LONGEST_VALUE:
         return f"{value[:LONGEST_VALUE]!r}... (of {len(value):,} characters)"
-    return _cut(repr(value), LONGEST_VALUE)
+    return brief(repr(value))
 
 
 def brief(name: str) -> str:

@@ -8,7 +8,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 from breakaway.design.pole_placement import pole_placement, with_residual
-from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import ForceActuator
 from breakaway.model.scenario.controller import (
     AnyController,
@@ -19,19 +18,12 @@ from breakaway.model.scenario.controller import (
     TwoStep,
 )
 from breakaway.model.scenario.core_joint import leave_out_zero, nested_joint
+from breakaway.model.scenario.given import check_scenario
 from breakaway.model.scenario.joint import AnyJoint
 from breakaway.model.scenario.model import Model
 from breakaway.model.scenario.scenario import Scenario
 
 AnyPart = TypeVar("AnyPart", bound=Model)
-
-
-def check_scenario(given: object) -> None:
-    """Refuse what is no scenario, such as the name of a preset."""
-    if not isinstance(given, Scenario):
-        raise ScenarioError(
-            f"scenario: {given!r} is not a Scenario; load_scenario gives that of a preset or a file"
-        )
 
 
 def resolve(scenario: Scenario) -> Scenario:

@@ -7,6 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from breakaway import _core
+from breakaway.base.arguments import check_whole
 from breakaway.errors import ScenarioError
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.finished import Outcome, Run, RunMetrics
@@ -21,8 +22,8 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
     scenario : Scenario
         What is simulated.
     run_index : int, optional
-        Number of the run among the runs of the scenario's seed: the same scenario, seed and
-        number give the same bits on any machine and any number of threads.
+        Number of the run among the runs of the scenario's seed, 0 to 2^64 - 1: the same scenario,
+        seed and number give the same bits on any machine and any number of threads.
 
     Returns
     -------
@@ -43,8 +44,7 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
     ('released', '3.0361e-06', '601.4')
 
     """
-    if not isinstance(run_index, int) or not 0 <= run_index < 2**64:
-        raise ScenarioError(f"run_index: {run_index!r} is not a whole number within 0 to 2^64 - 1")
+    check_whole("run_index", run_index, ScenarioError, 0, 2**64 - 1)
     resolved = resolve(scenario)
     outcome, figures, columns = _core.run_one(core_job(resolved, run_index))
     trace = {name: np.frombuffer(values) for name, values in columns.items() if values}

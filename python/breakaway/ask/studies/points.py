@@ -54,10 +54,9 @@ class Point:
         numbers = self.runs[rows.start : rows.stop]
         return simulate_many(
             self.scenario,
-            len(numbers),
+            numbers,
             vary=self.draw(numbers),
             metrics=[*metrics, "outcome"],
-            first_run=numbers.start,
             threads=threads,
             progress=progress,
         )

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway import _core
+from breakaway.base.arguments import check_choice, check_kind, check_whole, run_numbers
 from breakaway.base.free_memory import check_fits
+from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import (
     Distribution,
@@ -25,13 +27,16 @@ Array = NDArray[np.float64]
 Design = Literal["random", "sobol", "latin_hypercube"]
 DESIGNS = ("random", "sobol", "latin_hypercube")
 
+SEED_MAX = 2**63 - 1
+"""Largest seed, as of a scenario: TOML's integers end there."""
+
 _SHARED_ROWS = 2**31
 """Number of the draw that all shared samples take their row from."""
 
 
 def draw_columns(
     vary: Mapping[str, Distribution],
-    runs: range,
+    runs: int | range,
     *,
     seed: int,
     design: Design = "random",
@@ -47,15 +52,15 @@ def draw_columns(
     ----------
     vary : mapping
         Distributions by dotted path.
-    runs : range
-        Run numbers, consecutive.
+    runs : int or range
+        How many, from number 0 on; or their numbers, consecutive.
     seed : int
-        Seed of the draws.
+        Seed of the draws, 0 to 2^63 - 1.
     design : {"random", "sobol", "latin_hypercube"}, optional
         How the values are spread. Sobol points are scrambled, as they have to be for means to be
         without bias.
     total : int, optional
-        Runs of the whole design. Left out: up to the last of ``runs``.
+        Runs of the whole design, which holds ``runs``. Left out: up to the last of them.
 
     Returns
     -------
@@ -65,8 +70,8 @@ def draw_columns(
     Raises
     ------
     StudyError
-        There is no such design, the runs are not among it, something is not a distribution,
-        shared samples differ in length, or the values can not fit into the free memory.
+        There is no such design, the runs are not among it, an argument is of a wrong kind or out of
+        range, shared samples differ in length, or the values can not fit into the free memory.
 
     Examples
     --------
@@ -78,28 +83,43 @@ def draw_columns(
     True
 
     """
-    if design not in DESIGNS:
-        raise StudyError(f"design: {design!r} is not one of {', '.join(map(repr, DESIGNS))}")
-    size = runs.stop if total is None else total
-    if runs.step != 1 or runs.start < 0 or runs.stop > size:
-        raise StudyError(f"runs: {runs} are not consecutive runs of a design of {size}")
+    check_vary(vary)
+    check_choice("design", design, DESIGNS, StudyError)
+    check_seed(seed)
+    numbers = run_numbers(runs, fewest=0)
+    size = numbers.stop if total is None else total
+    check_whole("total", size, StudyError, numbers.stop)
     for path, distribution in vary.items():
         if not isinstance(distribution, Uniform | LogUniform | Normal | LogNormal | Samples):
-            raise StudyError(f"vary[{path!r}]: {distribution!r} is not a distribution")
+            raise StudyError(f"vary[{path!r}]: {shown(distribution)} is not a distribution")
     _check_shared(vary)
-    drawn = runs.stop - runs.start if design == "random" else size  # a design is made whole
+    drawn = numbers.stop - numbers.start if design == "random" else size  # a design is made whole
     check_fits("runs", drawn, 8.0 * (len(vary) + 1), "draw fewer at a time")
     points = {} if design == "random" else _points(design, len(vary), size, seed)
     columns = {}
     for number, (path, distribution) in enumerate(vary.items()):
         if isinstance(distribution, Samples) and distribution.rows == "shared":
-            u = _fractions(seed, runs, _SHARED_ROWS)
+            u = _fractions(seed, numbers, _SHARED_ROWS)
         elif design == "random":
-            u = _fractions(seed, runs, number)
+            u = _fractions(seed, numbers, number)
         else:
-            u = points[number][runs.start : runs.stop]
+            u = points[number][numbers.start : numbers.stop]
         columns[path] = distribution.quantile(u)
     return columns
+
+
+def check_vary(vary: object) -> None:
+    """Refuse what does not say by dotted path what is to vary."""
+    check_kind(
+        "vary", vary, Mapping, "give a mapping from paths such as joint.stiction_n", StudyError
+    )
+    for path in vary if isinstance(vary, Mapping) else ():
+        check_kind("vary", path, str, "paths are such as joint.stiction_n", StudyError)
+
+
+def check_seed(seed: object) -> None:
+    """Refuse what can not seed the core's draws."""
+    check_whole("seed", seed, StudyError, 0, SEED_MAX)
 
 
 def _fractions(seed: int, runs: range, number: int) -> Array:
@@ -147,12 +167,13 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
     Parameters
     ----------
     levels : mapping
-        Values by dotted path.
+        Values by dotted path, finite numbers each.
 
     Raises
     ------
     StudyError
-        The combinations can not fit into the free memory.
+        There is something else than lists of numbers, or the combinations can not fit into the free
+        memory.
 
     Examples
     --------
@@ -161,7 +182,19 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
     ([0.0, 0.0, 0.1, 0.1], [1.0, 2.0, 1.0, 2.0])
 
     """
-    count = math.prod(map(len, levels.values()))
+    check_kind("levels", levels, Mapping, "give values by dotted path", StudyError)
+    columns = [_level_column(path, values) for path, values in levels.items()]
+    count = math.prod(map(len, columns))
     check_fits("levels", count, 8.0 * len(levels), "give fewer levels")
-    tables = np.meshgrid(*(np.asarray(v, dtype=np.float64) for v in levels.values()), indexing="ij")
+    tables = np.meshgrid(*columns, indexing="ij")
     return {path: table.ravel() for path, table in zip(levels, tables, strict=True)}
+
+
+def _level_column(path: str, values: object) -> Array:
+    try:
+        column = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        column = np.zeros(())
+    if column.ndim != 1:
+        raise StudyError(f"levels[{path!r}]: {shown(values)} is not a list of numbers; give one")
+    return column

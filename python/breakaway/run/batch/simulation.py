@@ -11,10 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel
 
 from breakaway import _core
+from breakaway.base.arguments import check_callable, check_choice, run_numbers
 from breakaway.base.free_memory import check_fits
+from breakaway.base.text import shown
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
+from breakaway.model.scenario.given import check_scenario
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch.batch import Batch
 from breakaway.run.batch.columns import (
@@ -23,32 +26,30 @@ from breakaway.run.batch.columns import (
     core_columns,
     with_nominal_controller,
 )
-from breakaway.run.batch.draw import Design, draw_columns
+from breakaway.run.batch.draw import Design, check_vary, draw_columns
 from breakaway.run.finished import RunMetrics
-from breakaway.run.resolution import check_scenario
 
 METRICS = (*(field.name for field in fields(RunMetrics)), "outcome")
 """What can be asked of each run."""
 RUNS_MAX = 2**32
-"""Most runs of one batch."""
+"""One batch has fewer runs."""
 
 
 def simulate_many(
     scenario: Scenario,
-    runs: int,
+    runs: int | range,
     *,
     vary: Mapping[str, Distribution | ArrayLike] | None = None,
     design: Design = "random",
     metrics: Sequence[str] | None = None,
-    first_run: int = 0,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     instructions: str | None = None,
 ) -> Batch:
     """Simulate many extractions: the same scenario, other draws, and other parts.
 
-    Every run has the bits of ``simulate(batch.scenario_of(i), run_index=first_run + i)``, on any
-    number of threads. Runs do not wait for the interpreter. A controller that is designed by
+    Every run has the bits of ``simulate(batch.scenario_of(i), run_index=batch.run_index[i])``, on
+    any number of threads. Runs do not wait for the interpreter. A controller that is designed by
     pole placement is designed for the scenario as it stands, and does not know what the numbers
     of a part are; what else a scenario leaves open (residual friction, bounds) follows each part.
 
@@ -56,8 +57,9 @@ def simulate_many(
     ----------
     scenario : Scenario
         What the runs have in common. Its trace is not recorded; see `Batch.replay`.
-    runs : int
-        How many.
+    runs : int or range
+        How many, from number 0 on; or their numbers among the runs of the scenario's seed, such as
+        ``range(100, 200)``.
     vary : mapping, optional
         What differs from run to run beside the draws of the disturbance, by dotted path: a
         distribution, or one value for each run.
@@ -67,8 +69,6 @@ def simulate_many(
         What is wanted of each run: names of `RunMetrics`, and ``outcome``. Left out:
         everything. What is not wanted takes no time. The metrics of a run that diverged
         are those until it did.
-    first_run : int, optional
-        Number of the first run among the runs of the scenario's seed.
     threads : int, optional
         Left out: one for each processor.
     progress : callable, optional
@@ -107,20 +107,21 @@ def simulate_many(
 
     """
     check_scenario(scenario)
+    vary = {} if vary is None else vary
+    check_vary(vary)
+    check_callable("progress", progress, StudyError)
+    if instructions is not None:
+        check_choice("instructions", instructions, _core.instructions(), StudyError)
     names = _wanted(metrics)
-    count = _whole("runs", runs, 1, RUNS_MAX)
-    first = _whole("first_run", first_run, 0, 2**63)
+    numbers = run_numbers(runs, most=RUNS_MAX - 1)
+    count = numbers.stop - numbers.start
     workers = thread_count(threads)
-    if instructions not in (None, *_core.instructions()):
-        raise StudyError(
-            f"instructions: {instructions!r} is not one of {', '.join(_core.instructions())}"
-        )
     nominal = with_nominal_controller(scenario)
-    check_paths(nominal, vary or {})
-    check_batch_fits(count, len(vary or {}), len({*names} - {"outcome"}))
-    columns = _columns(nominal, vary or {}, range(first, first + count), design)
-    check_values(nominal, columns, first)
-    run_index = np.arange(first, first + count, dtype=np.uint64)
+    check_paths(nominal, vary)
+    check_batch_fits(count, len(vary), len({*names} - {"outcome"}))
+    columns = _columns(nominal, vary, numbers, design)
+    check_values(nominal, columns, numbers.start)
+    run_index = np.arange(numbers.start, numbers.stop, dtype=np.uint64)
     tell = None if progress is None else lambda done: progress(done, count)
     return run_columns(nominal, run_index, columns, names, workers, tell, instructions)
 
@@ -136,7 +137,7 @@ def check_batch_fits(runs: int, varied: int, metrics: int) -> None:
     """
     run, number, metric = 16, 24, 16  # bytes, those of copies among them
     each = run + number * varied + metric * metrics
-    check_fits("runs", runs, each, "ask for fewer metrics, or for fewer runs at a time (first_run)")
+    check_fits("runs", runs, each, "ask for fewer metrics, or for fewer runs at a time")
 
 
 def run_columns(
@@ -175,17 +176,12 @@ def _wanted(metrics: Sequence[str] | None) -> Sequence[str]:
     if metrics is None:
         return METRICS
     if not isinstance(metrics, Sequence) or isinstance(metrics, str) or not metrics:
-        raise StudyError(f"metrics: {metrics!r} is not a list of names; give some of {METRICS}")
+        raise StudyError(
+            f"metrics: {shown(metrics)} is not a list of names; give some of {', '.join(METRICS)}"
+        )
     for name in metrics:
-        if name not in METRICS:
-            raise StudyError(f"metrics: {name!r} is not one of {', '.join(METRICS)}")
+        check_choice("metrics", name, METRICS, StudyError)
     return tuple(dict.fromkeys(metrics))
-
-
-def _whole(name: str, value: int, low: int, high: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value < high:
-        raise StudyError(f"{name}: {value!r} is not a whole number >= {low} and < {high}")
-    return value
 
 
 def _columns(
@@ -208,7 +204,7 @@ def _given(path: str, values: object, count: int) -> NDArray[np.float64]:
         column = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise StudyError(
-            f"vary[{path!r}]: {values!r} is neither a distribution nor numbers"
+            f"vary[{path!r}]: {shown(values)} is neither a distribution nor numbers"
         ) from None
     if column.shape != (count,):
         raise StudyError(

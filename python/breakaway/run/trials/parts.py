@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
+from breakaway.model.scenario.given import check_population
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import LAWS, QUANTITIES, Law, PartPopulation
 from breakaway.model.scenario.scenario import Scenario
@@ -20,26 +21,34 @@ STEP_RULE = 0.3
 """Longest step over sqrt(mass / stiffness): that of a scenario."""
 
 
-def draw_parts(population: PartPopulation, runs: range, *, seed: int) -> dict[str, Array]:
+def draw_parts(population: PartPopulation, runs: int | range, *, seed: int) -> dict[str, Array]:
     """Draw the quantities of some parts. A part is a function of the seed and its number.
 
     Parameters
     ----------
     population : PartPopulation
         How parts differ.
-    runs : range
-        Numbers of the parts.
+    runs : int or range
+        How many, from number 0 on; or the numbers of the parts.
     seed : int
-        Seed of the draws.
+        Seed of the draws, 0 to 2^63 - 1.
+
+    Raises
+    ------
+    ScenarioError
+        It is no population.
+    StudyError
+        ``runs`` or ``seed`` are out of range, or the parts can not fit into the free memory.
 
     Examples
     --------
     >>> import breakaway as bk
-    >>> parts = bk.draw_parts(bk.load_population("seized_parts"), range(3), seed=0)
+    >>> parts = bk.draw_parts(bk.load_population("seized_parts"), 3, seed=0)
     >>> bool((parts["stiction_ratio"] >= 1.1).all())
     True
 
     """
+    check_population(population)
     vary: dict[str, Distribution] = {name: getattr(population.parts, name) for name in QUANTITIES}
     return draw_columns(vary, runs, seed=seed)
 

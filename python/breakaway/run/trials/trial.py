@@ -8,10 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.base.arguments import check_callable, check_choice, run_numbers
 from breakaway.base.equality import ByValue
 from breakaway.base.threads import thread_count
+from breakaway.errors import StudyError
+from breakaway.model.scenario.given import check_method, check_population
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import QUANTITIES, Gentleness, Law, PartPopulation
+from breakaway.model.scenario.population import (
+    LAWS,
+    QUANTITIES,
+    Gentleness,
+    Law,
+    PartPopulation,
+)
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch import check_batch_fits, run_columns
 from breakaway.run.finished import Run
@@ -117,7 +126,7 @@ def run_trial(
     method: Method,
     *,
     law: Law = "lugre",
-    runs: range,
+    runs: int | range,
     seed: int,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -135,35 +144,51 @@ def run_trial(
         How they are freed.
     law : str, optional
         The friction law of their joints.
-    runs : range
-        Numbers of the parts: the same numbers and seed are the same parts for every method.
+    runs : int or range
+        How many parts, from number 0 on; or their numbers. The same numbers and seed are the same
+        parts for every method.
     seed : int
-        Seed of parts, disturbances and noise.
+        Seed of parts, disturbances and noise, 0 to 2^63 - 1.
     threads : int, optional
         Left out: one for each processor.
     progress : callable, optional
         Called about 20 times a second with the parts done and all parts. What it raises ends the
         trial.
 
+    Raises
+    ------
+    ScenarioError
+        It is no population, or no method.
+    StudyError
+        Another argument is of a wrong kind or out of range, or the trial can not fit into the free
+        memory; nothing has run then.
+    KeyboardInterrupt
+        Ctrl-C.
+
     Examples
     --------
     >>> import breakaway as bk
     >>> population, method = bk.load_population("seized_parts"), bk.load_method("steady_feed")
-    >>> trial = bk.run_trial(population, method, runs=range(8), seed=1)
+    >>> trial = bk.run_trial(population, method, runs=8, seed=1)
     >>> int(trial.released.sum())
     8
 
     """
+    check_population(population)
+    check_method(method)
+    check_choice("law", law, LAWS, StudyError)
+    check_callable("progress", progress, StudyError)
     workers = thread_count(threads)
-    check_batch_fits(runs.stop - runs.start, len(QUANTITIES), len(TRIAL_METRICS))
-    parts = draw_parts(population, runs, seed=seed)
+    numbers = run_numbers(runs)
+    check_batch_fits(numbers.stop - numbers.start, len(QUANTITIES), len(TRIAL_METRICS))
+    parts = draw_parts(population, numbers, seed=seed)
     steps = steps_per_period(population, parts)
-    metrics = {name: np.full(len(runs), np.nan) for name in TRIAL_METRICS}
+    metrics = {name: np.full(len(numbers), np.nan) for name in TRIAL_METRICS}
     done = 0
 
     def tell(count: int) -> None:
         if progress:
-            progress(done + count, len(runs))
+            progress(done + count, len(numbers))
 
     for needed in np.unique(steps)[::-1]:
         rows = np.flatnonzero(steps == needed)
@@ -172,7 +197,7 @@ def run_trial(
         shared = scenario_of(population, method, law, seed=seed, steps=int(needed))
         batch = run_columns(
             shared,
-            np.asarray(runs.start + rows, dtype=np.uint64),
+            np.asarray(numbers.start + rows, dtype=np.uint64),
             part_columns(population, method, law, group),
             TRIAL_METRICS,
             workers,
@@ -181,4 +206,4 @@ def run_trial(
         for name in TRIAL_METRICS:
             metrics[name][rows] = batch.metrics[name]
         done += len(rows)
-    return Trial(population, method, law, seed, runs, parts, metrics)
+    return Trial(population, method, law, seed, numbers, parts, metrics)
