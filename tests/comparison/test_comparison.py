@@ -24,7 +24,7 @@ LAWS = ["lugre", "elasto_plastic"]
 
 def columns_of(folder: Path, law: str, method: str) -> dict[str, np.ndarray]:
     wanted = (ds.field("law") == law) & (ds.field("method") == method)
-    table = ds.dataset(folder / "parts", format="parquet").to_table(filter=wanted)
+    table = ds.dataset(folder / "pieces", format="parquet").to_table(filter=wanted)
     return {name: table[name].to_numpy() for name in table.column_names}
 
 
@@ -34,9 +34,9 @@ def test_the_folder_has_everything(whole, done):
     figures = {"shares", "jump_against_peak", *courses}
     assert names == {
         ".lock", "digests.txt", "manifest.json", "comparison.toml", "table.csv", "summary.json",
-        "index.html", "parts", *(f"{name}.{kind}" for name in figures for kind in ("png", "svg")),
+        "index.html", "pieces", *(f"{name}.{kind}" for name in figures for kind in ("png", "svg")),
     }  # fmt: skip
-    assert len(list((whole / "parts").iterdir())) == 6
+    assert len(list((whole / "pieces").iterdir())) == 6
     summary = json.loads((whole / "summary.json").read_text())
     assert summary["result"] == list(done.result)
     assert summary["table"] == list(done.table)

@@ -91,11 +91,11 @@ def test_what_is_done_is_found_and_told(whole):
 def test_a_damaged_level_is_computed_again_and_said(whole, tmp_path):
     folder = tmp_path / "figure_10"
     shutil.copytree(whole, folder)
-    part = next(iter(sorted((folder / "with_vibration_bounded" / "parts").iterdir())))
-    part.write_bytes(part.read_bytes()[:-30])
+    piece = next(iter(sorted((folder / "with_vibration_bounded" / "pieces").iterdir())))
+    piece.write_bytes(piece.read_bytes()[:-30])
     said = []
     dataclasses.replace(SMALL, notice=said.append).run(folder)
-    assert len(said) == 1 and part.name in said[0] and "computed again" in said[0]
+    assert len(said) == 1 and piece.name in said[0] and "computed again" in said[0]
     assert contents(folder) == contents(whole)
 
 
@@ -119,8 +119,8 @@ def test_a_full_disk_tells_how_to_go_on(tmp_path, monkeypatch):
     def full(path, _):
         raise OutputError(f"{path}: can not be written: No space left on device; make room")
 
-    monkeypatch.setattr("breakaway.ask.studies.pieces.write_inside", full)
-    with pytest.raises(OutputError, match="finished parts stay: resume it to go on"):
+    monkeypatch.setattr("breakaway.ask.durable.journal.write_inside", full)
+    with pytest.raises(OutputError, match="what is finished stays: resume it to go on"):
         SMALL.run(tmp_path / "figure_10")
 
 
