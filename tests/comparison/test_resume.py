@@ -81,7 +81,7 @@ def test_a_killed_process_loses_no_finished_part(small, tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
-def test_ctrl_c_keeps_finished_parts(small, tmp_path):
+def test_ctrl_c_keeps_finished_pieces(small, tmp_path):
     def stop(at):
         if at.runs_done >= 31:
             raise KeyboardInterrupt
@@ -109,7 +109,7 @@ def test_a_missing_file_of_the_end_is_made_again(whole, tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
-def test_damaged_parts_are_computed_again_and_said(whole, tmp_path):
+def test_damaged_pieces_are_computed_again_and_said(whole, tmp_path):
     folder = shutil.copytree(whole, tmp_path / "damaged")
     files = sorted((folder / "pieces").iterdir())
     files[0].write_bytes(files[0].read_bytes()[:-20])
@@ -127,7 +127,7 @@ def test_damaged_parts_are_computed_again_and_said(whole, tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
-def test_a_foreign_part_is_computed_again_and_said(whole, tmp_path):
+def test_a_foreign_piece_is_computed_again_and_said(whole, tmp_path):
     """The same parts and columns, but for what became of them."""
     folder = shutil.copytree(whole, tmp_path / "mixed")
     path = folder / "pieces" / "piece-000001.parquet"

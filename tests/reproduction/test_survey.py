@@ -73,11 +73,11 @@ def test_an_interrupted_survey_goes_on_to_the_same_files(whole, tmp_path, runs):
     with pytest.raises(KeyboardInterrupt):
         dataclasses.replace(SMALL, progress=interrupted_after(runs)).run(folder)
     kept = {path: (folder / path).stat().st_mtime_ns for path in contents(folder)}
-    parts = [path for path in kept if path.suffix == ".parquet"]
-    assert len(parts) < 9
+    pieces = [path for path in kept if path.suffix == ".parquet"]
+    assert len(pieces) < 9
     SMALL.run(folder)
     assert contents(folder) == contents(whole)
-    for path in parts:
+    for path in pieces:
         assert (folder / path).stat().st_mtime_ns == kept[path]
 
 

@@ -143,7 +143,7 @@ def test_a_piece_that_was_read_once_is_looked_at_again(whole, other):
 
 
 @pytest.mark.parametrize("number", [0, 1, 2])
-def test_a_missing_part_is_not_finished(asked, whole, number):
+def test_a_missing_piece_is_not_finished(asked, whole, number):
     before = contents(whole)
     (whole / "pieces" / f"piece-00000{number}.parquet").unlink()
     done = open_study(whole)
@@ -154,13 +154,13 @@ def test_a_missing_part_is_not_finished(asked, whole, number):
     assert contents(whole) == before
 
 
-def test_a_part_too_many_is_not_read(whole):
+def test_a_piece_too_many_is_not_read(whole):
     shutil.copy(whole / PIECE, whole / "pieces" / "piece-000003.parquet")
     with pytest.raises(StudyError, match=r"piece-000003\.parquet: has no digest"):
         open_study(whole).scan()
 
 
-def test_files_of_others_among_the_parts_are_left_alone(asked, whole):
+def test_files_of_others_among_the_pieces_are_left_alone(asked, whole):
     for name in ("part-mine.parquet", "notes.txt"):
         (whole / "pieces" / name).write_text("mine")
     assert open_study(whole).scan().num_rows == 30

@@ -34,7 +34,7 @@ SPREAD = {"distribution": "uniform", "low": 540.0, "high": 560.0}
 
 @pytest.fixture(scope="module")
 def robustness(pushed):
-    """Give a study of many small parts, whose levels depend on what was found."""
+    """Give a study of many small pieces, whose levels depend on what was found."""
     return parse_study(
         {
             "kind": "robustness",
@@ -121,7 +121,7 @@ def test_the_folder_says_all(whole, robustness):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
-def test_kill_9_at_random_moments_loses_no_finished_part(study_file, whole, tmp_path):
+def test_kill_9_at_random_moments_loses_no_finished_piece(study_file, whole, tmp_path):
     folder, moments = tmp_path / "killed", random.Random(5)
     total = len(open_study(whole).piece_files)
     seen = []
@@ -147,7 +147,7 @@ def test_kill_9_at_random_moments_loses_no_finished_part(study_file, whole, tmp_
     assert {path: path.stat().st_mtime_ns for path in times} == times  # not computed again
 
 
-def test_ctrl_c_keeps_finished_parts(robustness, whole, tmp_path):
+def test_ctrl_c_keeps_finished_pieces(robustness, whole, tmp_path):
     folder = tmp_path / "interrupted"
 
     def stop(at):
@@ -158,9 +158,9 @@ def test_ctrl_c_keeps_finished_parts(robustness, whole, tmp_path):
         run_study(robustness, out=folder, progress=stop)
     done = open_study(folder)
     assert (done.finished, len(done.piece_files)) == (False, 10)
-    assert repr(done) == "<study 'study', robustness, not finished, 10 parts>"
+    assert repr(done) == "<study 'study', robustness, not finished, 10 pieces>"
     assert done.dataset.count_rows() == 100
-    with pytest.raises(StudyError, match="is not finished, 10 parts are; go on with --resume"):
+    with pytest.raises(StudyError, match="is not finished, 10 pieces are; go on with --resume"):
         _ = done.summary
     found = []
     run_study(robustness, out=folder, resume=True, progress=lambda at: found.append(at.runs_found))
@@ -223,10 +223,10 @@ def test_a_description_may_change(robustness, whole, tmp_path):
     run_study(robustness.model_copy(update={"description": "new"}), out=folder, resume=True)
 
 
-def test_damaged_parts_are_computed_again_and_said(robustness, whole, tmp_path):
+def test_damaged_pieces_are_computed_again_and_said(robustness, whole, tmp_path):
     folder = shutil.copytree(whole, tmp_path / "damaged")
     cut, flipped, empty, swapped, gone = (
-        folder / "pieces" / f"part-{number:06d}.parquet" for number in range(1, 6)
+        folder / "pieces" / f"piece-{number:06d}.parquet" for number in range(1, 6)
     )
     cut.write_bytes(cut.read_bytes()[:-20])
     content = bytearray(flipped.read_bytes())
@@ -349,5 +349,5 @@ def test_a_folder_of_others_is_refused(robustness, tmp_path):
 
 def test_every_error_is_one_of_ours(robustness):
     assert plan_of(robustness).runs_max >= 300
-    with pytest.raises(BreakawayError, match="is none; load one with load_study"):
+    with pytest.raises(BreakawayError, match="is not a study; load one with load_study"):
         plan_of("sweep")

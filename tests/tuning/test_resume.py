@@ -238,7 +238,7 @@ def test_a_study_is_no_tuning(tmp_path):
         runs=1,
     )
     run_study(study, out=tmp_path / "study")
-    with pytest.raises(bk.StudyError, match="is of a study of the kind 'sweep'"):
+    with pytest.raises(bk.StudyError, match="is of a study, not of a tuning; open it with open_s"):
         bk.open_tuning(tmp_path / "study")
 
 
