@@ -100,6 +100,15 @@ def test_a_comparison_runs_again_from_its_file(
 
 
 @pytest.mark.usefixtures("no_figures")
+def test_a_file_is_no_folder(call: Call, given: list[str], tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    failed = call(*given, "--out", str(tmp_path / "file"), "--json")
+    assert (failed.exit_code, failed.stdout) == (3, "")
+    assert "is a file, not a folder; give a folder" in failed.stderr
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+@pytest.mark.usefixtures("no_figures")
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -107,17 +116,12 @@ def test_a_comparison_runs_again_from_its_file(
         (["--method", "steady_fed"], "did you mean steady_feed"),
         (["--runs", "0"], "runs: 0 is not >= 1"),
         (["--baseline", "none"], "baselines: 'none' is not one of slow, fast"),
-        (["--out", "FILE"], "is a file, not a folder; give a folder"),
     ],
 )
 def test_what_makes_no_sense_exits_with_2(
     call: Call, given: list[str], tmp_path: Path, words: list[str], said: str
 ) -> None:
-    (tmp_path / "FILE").write_text("mine")
-    words = [str(tmp_path / word) if word == "FILE" else word for word in words]
-    if "--out" not in words:
-        words += ["--out", str(tmp_path / "out")]
-    failed = call(*given, *words, "--json")
+    failed = call(*given, *words, "--out", str(tmp_path / "out"), "--json")
     assert (failed.exit_code, failed.stdout) == (2, "")
     assert failed.stderr.startswith("error: ")
     assert said in failed.stderr
@@ -134,7 +138,7 @@ def test_an_unknown_population_exits_with_2(call: Call, tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(given: list[str], tmp_path: Path) -> None:
     out, file = tmp_path / "my out", tmp_path / "comparison.toml"
-    asked = ask(given[1], [given[3], given[5]]).model_copy(update={"runs_per_part": 50})
+    asked = ask(given[1], [given[3], given[5]]).model_copy(update={"runs_per_piece": 50})
     file.write_text(asked.toml())
     words = ["compare", str(file), "--out", str(out), "--runs", "100000"]
     process = subprocess.Popen(
@@ -144,14 +148,14 @@ def test_ctrl_c_says_how_to_go_on(given: list[str], tmp_path: Path) -> None:
         text=True,
         env=os.environ | {"COLUMNS": "100"},
     )
-    while len(list(out.glob("parts/part-*"))) < 1:
+    while len(list(out.glob("pieces/piece-*"))) < 1:
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     stdout, stderr = process.communicate(timeout=60)
     assert (process.returncode, stdout) == (130, "")
     first, last = stderr.splitlines()
-    assert first.startswith("finished parts are kept; go on with: breakaway compare ")
+    assert first.startswith("what is finished is kept; go on with: breakaway compare ")
     assert first.endswith(f"--out '{out}' --runs 100000 --resume")
     assert last == "interrupted"
-    assert not list(out.glob("parts/.part-*"))
+    assert not list(out.glob("pieces/.piece-*"))
