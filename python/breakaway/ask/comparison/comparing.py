@@ -23,8 +23,9 @@ from breakaway.base.equality import ByValue
 from breakaway.base.reading import is_folder, is_there
 from breakaway.base.threads import thread_count
 from breakaway.errors import OutputError, StudyError
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import Law, PartPopulation
+from breakaway.model.scenario.population import PartPopulation
 from breakaway.run.trials import Trial, run_trial
 
 DRAWING = "figures and page"

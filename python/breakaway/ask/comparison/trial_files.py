@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from breakaway.ask.comparison.asked import Asked
 from breakaway.ask.studies.part_files import as_bytes, found, part_name, remove_beyond
 from breakaway.ask.studies.pieces import Pieces
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import QUANTITIES, Law
+from breakaway.model.scenario.population import QUANTITIES
 from breakaway.model.units import unit_of
 from breakaway.run.trials import TRIAL_METRICS, Trial
 

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from breakaway.base.equality import ByValue
 from breakaway.base.threads import thread_count
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import QUANTITIES, Gentleness, Law, PartPopulation
+from breakaway.model.scenario.population import QUANTITIES, Gentleness, PartPopulation
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch import check_batch_fits, run_columns
 from breakaway.run.finished import Run
