@@ -132,6 +132,7 @@ if TYPE_CHECKING:
     from breakaway.run.batch import Batch, draw_columns, grid_columns, simulate_many
     from breakaway.run.finished import Outcome, Run, RunMetrics
     from breakaway.run.imposed import ImposedMotion, impose_motion
+    from breakaway.run.overlay import lay_over
     from breakaway.run.resolution import resolve
     from breakaway.run.simulation import simulate
     from breakaway.run.trials import Trial, draw_parts, run_trial
@@ -169,6 +170,7 @@ _HOMES = {
         "noise_floor",
         "read_log",
     ),
+    "breakaway.run.overlay": ("lay_over",),
     "breakaway.run.resolution": ("resolve",),
     "breakaway.run.finished": ("Outcome", "Run", "RunMetrics"),
     "breakaway.model.scenario": (
@@ -384,6 +386,7 @@ __all__ = [
     "identify",
     "identify_inertia_friction",
     "impose_motion",
+    "lay_over",
     "load_method",
     "load_population",
     "load_scenario",
