@@ -130,6 +130,7 @@ from breakaway.run.finished import Run as Run
 from breakaway.run.finished import RunMetrics as RunMetrics
 from breakaway.model.friction.imposed import ImposedMotion as ImposedMotion
 from breakaway.model.friction.imposed import impose_motion as impose_motion
+from breakaway.run.overlay import lay_over as lay_over
 from breakaway.run.resolution import resolve as resolve
 from breakaway.run.simulation import simulate as simulate
 from breakaway.run.trials import Trial as Trial
