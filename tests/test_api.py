@@ -6,7 +6,6 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -161,113 +160,10 @@ def test_names_are_sorted_and_unique():
         _ = bk.simulat
 
 
-def public_functions():
-    for home, name in HOMES:
-        value = getattr(home, name)
-        if inspect.isfunction(value):
-            yield name, value
-        elif inspect.isclass(value):
-            for inner, method in vars(value).items():
-                function = getattr(method, "__func__", method)
-                if not inner.startswith("_") and inspect.isfunction(function):
-                    yield f"{name}.{inner}", function
-
-
-FUNCTIONS = dict(public_functions())
-
-
-def parameters_of(function):
-    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
-    return {
-        name: stars.get(parameter.kind, "")
-        for name, parameter in inspect.signature(function).parameters.items()
-        if name not in ("self", "cls")
-    }
-
-
-def test_functions_are_found():
-    assert {"simulate", "resolve", "pole_placement", "Scenario.with_", "Run.to_xarray"} <= set(
-        FUNCTIONS
-    )
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_every_parameter_is_documented(name):
-    """In a section of its own, as `numpydoc` has it; and no parameter that is not there."""
-    text = inspect.getdoc(FUNCTIONS[name]) or ""
-    assert text, name
-    _, _, after = text.partition("Parameters\n----------\n")
-    section = re.split(r"\n\w+\n-+\n", after)[0]
-    documented = re.findall(r"^(\*{0,2}\w+)(?: : .+)?$", section, re.MULTILINE)
-    expected = [stars + parameter for parameter, stars in parameters_of(FUNCTIONS[name]).items()]
-    assert documented == expected
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_unknown_arguments_are_refused(name):
-    if name in ("Scenario.with_", "Log.using"):  # by name, in tests/scenario and tests/logs
-        return
-    if name == "compare_laws":  # hands its settings on to identify
-        with pytest.raises(TypeError, match="no_such_argument"):
-            bk.compare_laws(
-                bk.Log(t_s=range(10), force_n=range(10)), held_out=(0, 1), no_such_argument=1
-            )
-        return
-    with pytest.raises(TypeError, match="no_such_argument"):
-        inspect.signature(FUNCTIONS[name]).bind_partial(no_such_argument=1)
-    with pytest.raises(TypeError, match=r"no_such_argument|missing|argument"):
-        FUNCTIONS[name](no_such_argument=1)
-
-
 def test_every_figure_is_documented_with_its_unit():
     source = inspect.getsource(bk.RunMetrics)
     for name in bk.RunMetrics.__dataclass_fields__:
         assert re.search(rf'{name}: float\n    """.+', source), name
-
-
-@pytest.mark.parametrize("run_index", [-1, 2**64, 1.5, "0", None])
-def test_a_run_index_out_of_range_is_refused(scenario, run_index):
-    with pytest.raises(bk.ScenarioError, match=rf"^run_index: {run_index!r} is not"):
-        bk.simulate(scenario, run_index=run_index)
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("velocity_m_per_s", [[1e-3]]),
-        ("velocity_m_per_s", [float("nan")]),
-        ("velocity_m_per_s", [float("inf")]),
-        ("period_s", 0.0),
-        ("period_s", -1e-3),
-        ("period_s", float("nan")),
-        ("period_s", float("inf")),
-        ("start_m", float("nan")),
-        ("start_m", float("inf")),
-    ],
-)
-def test_an_imposed_motion_out_of_range_is_refused(scenario, name, value):
-    joint = scenario.joint.model_copy(update={"residual_n": 9.81})
-    good = {"velocity_m_per_s": [1e-3] * 3, "period_s": 1e-3, "start_m": 0.0}
-    assert bk.impose_motion(joint, **good).joint_force_n.size == 3
-    with pytest.raises(bk.ScenarioError, match=rf"^{name}: "):
-        bk.impose_motion(joint, **{**good, name: value})
-    with pytest.raises(bk.ScenarioError, match=r"^joint\.residual_n: is missing; give"):
-        bk.impose_motion(scenario.joint, **good)
-
-
-@pytest.mark.parametrize("given", ["paper_as_computed", Path("mine.toml"), None])
-def test_what_is_no_scenario_is_refused(given, tmp_path):
-    takers = (
-        bk.resolve,
-        bk.simulate,
-        lambda given: bk.simulate_many(given, runs=2),
-        lambda given: bk.export_c(given, out=tmp_path / "c"),
-        lambda given: bk.export_fmu(given, out=tmp_path / "rig.fmu"),
-    )
-    for take in takers:
-        with pytest.raises(bk.ScenarioError, match=r"^scenario: .* is not a Scenario; load_scen"):
-            take(given)
-    assert not list(tmp_path.iterdir())
 
 
 # Reproducibility

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from breakaway.base.arguments import check_arguments
 from breakaway.base.equality import ByValue
 from breakaway.design.limit_cycle import Oscillator, oscillator_of
 from breakaway.design.loop import SampledPid
@@ -160,6 +161,7 @@ def compare_limit_cycle(
     ('agree: oscillation', True)
 
     """
+    check_arguments(compare_limit_cycle, locals(), ScenarioError)
     columns = (t_s, reference_m, velocity_m_per_s)
     t, r, v = (np.asarray(column, dtype=np.float64) for column in columns)
     if not (t.ndim == 1 and t.shape == r.shape == v.shape and t.size >= 16):
@@ -205,6 +207,7 @@ def measured_cycles(t_s: ArrayLike, velocity_m_per_s: ArrayLike, mean_m_per_s: A
     (array([7.96, 7.96]), array([0.1, 0.1]))
 
     """
+    check_arguments(measured_cycles, locals(), ScenarioError)
     t, mean = np.asarray(t_s, dtype=np.float64), np.asarray(mean_m_per_s, dtype=np.float64)
     d = np.asarray(velocity_m_per_s, dtype=np.float64) - mean
     up = np.flatnonzero((d[:-1] < 0.0) & (d[1:] >= 0.0))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.pole_placement import PidGains, check_positive
 from breakaway.design.stribeck import (
     FrictionLaw,
@@ -50,6 +51,7 @@ class SampledPid:
     """tau_f, in s, of the first-order filter on the derivative; 0 for none."""
 
     def __post_init__(self) -> None:
+        check_arguments(SampledPid.__init__, vars(self), ScenarioError)
         check_positive(period_s=self.period_s)
         gains = self.gains
         for name, value in (("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)):
@@ -106,6 +108,7 @@ def stuck_plant(joint: FrictionLaw, mass_kg: float) -> control.StateSpace:
     array([-4500., -4500.])
 
     """
+    check_arguments(stuck_plant, locals(), ScenarioError)
     check_positive(mass_kg=mass_kg)
     elastic = bristles(joint)
     if elastic is None:
@@ -160,6 +163,7 @@ def sliding_plant(
     True
 
     """
+    check_arguments(sliding_plant, locals(), ScenarioError)
     check_positive(mass_kg=mass_kg)
     m = mass_kg
     if velocity_m_per_s is None:
@@ -217,6 +221,7 @@ def open_loop(pid: SampledPid, plant: control.StateSpace) -> control.StateSpace:
     True
 
     """
+    check_arguments(open_loop, locals(), ScenarioError)
     import control
 
     sampled = control.c2d(plant, pid.period_s, method="zoh")

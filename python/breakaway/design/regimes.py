@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.loop import SampledPid, open_loop, sliding_plant, stuck_plant
 from breakaway.design.margins import Margins, margins
 from breakaway.design.pole_placement import PidGains
 from breakaway.design.stability import LoopStability
 from breakaway.design.stribeck import FrictionLaw, bristles, steepest_fall_velocity, stribeck_slope
+from breakaway.errors import ScenarioError
 from breakaway.model.scenario.controller import PidSettings
 from breakaway.model.scenario.run import Timing
 
@@ -71,6 +73,7 @@ def sampled_pid(gains: PidGains, settings: PidSettings, timing: Timing) -> Sampl
     (1e-05, 0)
 
     """
+    check_arguments(sampled_pid, locals(), ScenarioError)
     return SampledPid(
         gains,
         period_s=timing.control_period_s,
@@ -122,6 +125,7 @@ def sampled_loops(
     sliding, falling friction False
 
     """
+    check_arguments(sampled_loops, locals(), ScenarioError)
     loops = []
     if bristles(joint):
         loops.append(_loop("stuck", pid, stuck_plant(joint, mass_kg)))

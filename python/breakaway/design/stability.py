@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.pole_placement import PidGains, check_positive
 from breakaway.design.stribeck import FrictionLaw, StribeckLaw, bristles, stribeck_slope
 from breakaway.errors import ScenarioError
@@ -66,6 +67,7 @@ def stability(gains: PidGains, joint: FrictionLaw, mass_kg: float) -> Stability:
     (True, False)
 
     """
+    check_arguments(stability, locals(), ScenarioError)
     check_positive(mass_kg=mass_kg)
     stuck = None
     elastic = bristles(joint)

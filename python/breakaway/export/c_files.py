@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from breakaway import _core
+from breakaway.base.arguments import check_arguments
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import C_SOURCES
 from breakaway.errors import ScenarioError
@@ -89,6 +90,7 @@ def export_c(
     ['CMakeLists.txt', 'README.md', 'controller.c', 'controller.h']
 
     """
+    check_arguments(export_c, locals(), ScenarioError)
     check_choice("what", what, TITLES)
     check_choice("real", real, ("double", "float"))
     recording = record(resolve(scenario), what, real)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from breakaway import _core
+from breakaway.base.arguments import check_arguments
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import is_folder
 from breakaway.base.text import c_identifier
@@ -114,6 +115,7 @@ def export_fmu(
     ('loop.fmu', '3')
 
     """
+    check_arguments(export_fmu, locals(), ScenarioError)
     check_choice("what", what, TITLES)
     check_choice("fmi", str(fmi), ("2", "3"))
     version: Fmi = "2" if str(fmi) == "2" else "3"

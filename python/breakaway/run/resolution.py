@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, TypeVar
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.pole_placement import pole_placement, residual_n
+from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import ForceActuator
 from breakaway.model.scenario.controller import (
     AnyController,
@@ -15,7 +17,6 @@ from breakaway.model.scenario.controller import (
     PolePlacement,
     TwoStep,
 )
-from breakaway.model.scenario.given import check_scenario
 from breakaway.model.scenario.joint import AnyJoint, CoulombStiction, ElastoPlastic, Gms
 from breakaway.model.scenario.model import Model
 from breakaway.model.scenario.scenario import Scenario
@@ -46,7 +47,7 @@ def resolve(scenario: Scenario) -> Scenario:
     'given'
 
     """
-    check_scenario(scenario)
+    check_arguments(resolve, locals(), ScenarioError)
     joint, limits = scenario.joint, scenario.limits
     explicit_joint = joint.model_copy(
         update={"residual_n": residual_n(joint, scenario.part.mass_kg)}

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.identify import identify
 from breakaway.measure.identification.laws import LAWS, LawName, check_law
@@ -83,6 +84,7 @@ def compare_laws(
     (True, False)
 
     """
+    check_arguments(compare_laws, locals(), LogError)
     for law in laws:
         check_law(law, asymmetric=False, position_dependent=False)
     if not (len(held_out) == 2 and held_out[0] < held_out[1]):

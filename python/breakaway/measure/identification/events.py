@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.sliding import (
     FAST,
@@ -226,6 +227,7 @@ def find_breakaway_events(
     'the part slides one way only; give offset_n'
 
     """
+    check_arguments(find_breakaway_events, locals(), LogError)
     settings: dict[str, float | None] = {
         "rest_speed_m_per_s": rest_speed_m_per_s,
         "min_rest_s": min_rest_s,

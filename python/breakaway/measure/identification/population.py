@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.censored import (
     FEWEST_VALUES,
@@ -100,6 +101,7 @@ class Population:
             have a breakaway force above its sliding force.
 
         """
+        check_arguments(Population.correlated, locals(), LogError)
         if not 1 <= count <= 1_000_000:
             raise LogError(f"count is {count}; it must be 1 to 1000000")
         if self.correlation is None:
@@ -191,6 +193,7 @@ def fit_population(
     {'distribution': 'log_normal', 'median': 91.184..., 'sigma': 0.198...}
 
     """
+    check_arguments(fit_population, locals(), LogError)
     reports = [
         log if isinstance(log, BreakawayReport) else _searched(log, passed_share) for log in logs
     ]

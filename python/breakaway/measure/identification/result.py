@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.output_error import Problem, Progress
@@ -94,6 +95,7 @@ class Identification:
             n; laws that are compared have to be given the same.
 
         """
+        check_arguments(Identification.aic_for, locals(), LogError)
         deviance = rows * math.log(max(self.rms_error, 1e-300) ** 2)
         return deviance + 2.0 * (len(self.estimates) + 1)
 
@@ -132,6 +134,7 @@ class Identification:
             The log lacks a channel that the motion needs, or a span is empty.
 
         """
+        check_arguments(Identification.predict, locals(), LogError)
         settings = self.settings
         if motion is not None:
             known("motion", motion, MOTIONS)
@@ -160,6 +163,7 @@ class Identification:
             The parameter was not fitted.
 
         """
+        check_arguments(Identification.profile, locals(), LogError)
         inner = self.internals
         place = self._place(name)
         error = math.sqrt(inner.covariance.matrix[place, place])
@@ -186,6 +190,7 @@ class Identification:
             emcee is not installed; it is the extra ``posterior``.
 
         """
+        check_arguments(Identification.posterior, locals(), LogError)
         at_least_one("samples", samples)
         check_seed(seed)
         inner = self.internals
@@ -220,6 +225,7 @@ class Identification:
         draws below 0 of those that can not be are mirrored there.
 
         """
+        check_arguments(Identification.draws, locals(), LogError)
         at_least_one("samples", samples)
         check_seed(seed)
         inner = self.internals

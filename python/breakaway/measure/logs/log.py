@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 import numpy.typing as npt
 
+from breakaway.base.arguments import check_arguments
 from breakaway.base.text import brief, visible
 from breakaway.errors import LogError
 from breakaway.measure.logs import changes
@@ -106,6 +107,7 @@ class Log:
         ignored_columns: Iterable[str] = (),
         history: Iterable[str] = (),
     ) -> None:
+        check_arguments(Log.__init__, locals(), LogError)
         named_arrays = (position_m, force_n, reference_m, velocity_m_per_s)
         given = {name: a for name, a in zip(MOTION, named_arrays, strict=True) if a is not None}
         with named("log" if source is None else source.name):
@@ -153,6 +155,7 @@ class Log:
         146
 
         """
+        check_arguments(Log.from_channels, locals(), LogError)
         log = cls.__new__(cls)
         log._fill(channels, source, sha256, ignored_columns, history)
         return log
@@ -251,6 +254,7 @@ class Log:
             There is none of this name; the message names those present and the remedy.
 
         """
+        check_arguments(Log.channel, locals(), LogError)
         if name in self.channels:
             return self.channels[name]
         near = difflib.get_close_matches(name, self.channels, n=1)
@@ -322,6 +326,7 @@ class Log:
             Too few samples of a channel lie there.
 
         """
+        check_arguments(Log.between, locals(), LogError)
         with named(self.name):
             cut = changes.between(self.channels.values(), start_s, end_s)
         return self._with(cut, f"cut to {start_s:.9g} s to {end_s:.9g} s")
@@ -351,6 +356,7 @@ class Log:
         content above half of the new rate folds down.
 
         """
+        check_arguments(Log.resampled, locals(), LogError)
         if like is not None:
             self.channel(like)
         with named(self.name):
@@ -385,6 +391,7 @@ class Log:
             The line.
 
         """
+        check_arguments(Log.noted, locals(), LogError)
         return self._with(self.channels.values(), note)
 
     def _with(self, channels: Iterable[Channel], *notes: str) -> Log:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import difflib
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import tomli_w
 
+from breakaway.base.arguments import check_arguments
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import table_of, text_of
 from breakaway.errors import ScenarioError
@@ -21,9 +22,11 @@ from breakaway.model.scenario.scenario import Scenario
 AnyModel = TypeVar("AnyModel", bound=Model)
 
 PRESETS = files("breakaway.model.presets")
+Presets = Literal["", "populations", "methods", "stacks"]
+"""Folder of presets; that of scenarios has no name."""
 
 
-def preset_names(folder: str = "") -> list[str]:
+def preset_names(folder: Presets = "") -> list[str]:
     """Names of the presets that come with breakaway.
 
     Parameters
@@ -32,6 +35,7 @@ def preset_names(folder: str = "") -> list[str]:
         Which presets: scenarios, where it is left out.
 
     """
+    check_arguments(preset_names, locals(), ScenarioError)
     presets = PRESETS / folder if folder else PRESETS
     return sorted(p.name.removesuffix(".toml") for p in presets.iterdir() if p.name[-5:] == ".toml")
 
@@ -60,6 +64,7 @@ def load_scenario(source: str | Path) -> Scenario:
     breakaway.errors.ScenarioError: paper_as_computd: ... did you mean paper_as_computed?
 
     """
+    check_arguments(load_scenario, locals(), ScenarioError)
     return _load(Scenario, source, "")
 
 
@@ -82,6 +87,7 @@ def load_population(source: str | Path) -> PartPopulation:
     10.0
 
     """
+    check_arguments(load_population, locals(), ScenarioError)
     return _load(PartPopulation, source, "populations")
 
 
@@ -104,6 +110,7 @@ def load_method(source: str | Path) -> Method:
     'feed_axis'
 
     """
+    check_arguments(load_method, locals(), ScenarioError)
     return _load(Method, source, "methods")
 
 
@@ -129,10 +136,11 @@ def load_stack(source: str | Path) -> Piezo:
     3800
 
     """
+    check_arguments(load_stack, locals(), ScenarioError)
     return _load(Piezo, source, "stacks")
 
 
-def _load(model: type[AnyModel], source: str | Path, folder: str) -> AnyModel:
+def _load(model: type[AnyModel], source: str | Path, folder: Presets) -> AnyModel:
     if isinstance(source, str) and source in preset_names(folder):
         text = PRESETS.joinpath(*folder.split(), f"{source}.toml").read_text(encoding="utf-8")
         return parse_toml(model, text, source)
@@ -189,6 +197,7 @@ def save_scenario(scenario: Scenario, path: str | Path) -> None:
         The file can not be written.
 
     """
+    check_arguments(save_scenario, locals(), ScenarioError)
     write_atomically(Path(path), scenario_toml(scenario).encode())
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
+from breakaway.base.arguments import check_arguments
 from breakaway.base.equality import ByValue
 from breakaway.errors import StudyError
 from breakaway.model.scenario.scenario import Scenario
@@ -63,6 +64,7 @@ class Batch(ByValue):
             Row of the run.
 
         """
+        check_arguments(Batch.scenario_of, locals(), StudyError)
         return at_run(self.scenario, self.varied, self._row(i))
 
     def replay(self, i: int, *, trace_every: int | None = None) -> Run:
@@ -84,6 +86,7 @@ class Batch(ByValue):
         True
 
         """
+        check_arguments(Batch.replay, locals(), StudyError)
         from breakaway.run.simulation import simulate
 
         scenario = self.scenario_of(i)

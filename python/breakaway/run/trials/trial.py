@@ -8,14 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from breakaway.base.arguments import check_callable, check_choice, run_numbers
+from breakaway.base.arguments import check_arguments, run_numbers
 from breakaway.base.equality import ByValue
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
-from breakaway.model.scenario.given import check_method, check_population
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import (
-    LAWS,
     QUANTITIES,
     Gentleness,
     Law,
@@ -82,6 +80,7 @@ class Trial(ByValue):
             What it may suffer, such as ``population.strict``.
 
         """
+        check_arguments(Trial.within, locals(), StudyError)
         return np.asarray(
             self.released
             & (self.metrics["peak_over_breakaway"] <= limits.peak_over_breakaway_max)
@@ -98,6 +97,7 @@ class Trial(ByValue):
             Row of the part.
 
         """
+        check_arguments(Trial.scenario, locals(), StudyError)
         row = {name: values[i : i + 1] for name, values in self.parts.items()}
         steps = int(steps_per_period(self.population, row)[0])
         base = scenario_of(self.population, self.method, self.law, seed=self.seed, steps=steps)
@@ -115,6 +115,7 @@ class Trial(ByValue):
             Every how many samples the trace keeps a row.
 
         """
+        check_arguments(Trial.replay, locals(), StudyError)
         from breakaway.run.simulation import simulate
 
         scenario = self.scenario(i).with_({"trace.every_samples": trace_every})
@@ -174,10 +175,7 @@ def run_trial(
     8
 
     """
-    check_population(population)
-    check_method(method)
-    check_choice("law", law, LAWS, StudyError)
-    check_callable("progress", progress, StudyError)
+    check_arguments(run_trial, locals(), StudyError)
     workers = thread_count(threads)
     numbers = run_numbers(runs)
     check_batch_fits(numbers.stop - numbers.start, len(QUANTITIES), len(TRIAL_METRICS))
