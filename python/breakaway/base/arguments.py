@@ -15,6 +15,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, NoReturn, Union, get_args, get_origin, get_type_hints
 
+import numpy as np
+from numpy.typing import NDArray
+
 from breakaway.base.text import brief, shown
 from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioError, StudyError
 
@@ -194,6 +197,28 @@ def run_numbers(runs: int | range, *, fewest: int = 1, most: int | None = None) 
             "as many, such as range(100, 200)"
         )
     return numbers
+
+
+def column_of(name: str, values: object, error: Refusal) -> NDArray[np.float64]:
+    """Give numbers as a one-dimensional array, or refuse what is none.
+
+    Examples
+    --------
+    >>> column_of("t_s", [0, 1], StudyError)
+    array([0., 1.])
+    >>> column_of("t_s", "now", StudyError)
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.StudyError: t_s: 'now' is not a list of numbers; give one
+
+    """
+    try:
+        column = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        column = np.zeros(())
+    if column.ndim != 1:
+        raise error(f"{name}: {shown(values)} is not a list of numbers; give one")
+    return column
 
 
 def check_choice(name: str, value: object, known: Collection[str], error: Refusal) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from breakaway.base.arguments import check_arguments
+from breakaway.base.text import shown
 from breakaway.design.pole_placement import PidGains, check_positive
 from breakaway.design.stribeck import (
     FrictionLaw,
@@ -224,9 +225,18 @@ def open_loop(pid: SampledPid, plant: control.StateSpace) -> control.StateSpace:
     check_arguments(open_loop, locals(), ScenarioError)
     import control
 
+    check_system("plant", plant, "stuck_plant and sliding_plant give one")
     sampled = control.c2d(plant, pid.period_s, method="zoh")
     loop = control.series(sampled, _controller(pid))
     return control.series(loop, _delay(pid)) if pid.delay_samples else loop
+
+
+def check_system(name: str, value: object, remedy: str) -> None:
+    """Refuse what is no linear system of python-control."""
+    import control
+
+    if not isinstance(value, control.StateSpace | control.TransferFunction):
+        raise ScenarioError(f"{name}: {shown(value)} is not a control.StateSpace; {remedy}")
 
 
 def _lag(joint: StribeckLaw, velocity: float) -> tuple[float | None, float]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from breakaway.base.arguments import check_arguments
 from breakaway.base.text import visible
 from breakaway.errors import LogError
 
@@ -65,6 +66,8 @@ class Channel:
     unit: str = ""
 
     def __post_init__(self) -> None:
+        texts = {"name": self.name, "from_name": self.from_name, "unit": self.unit}
+        check_arguments(Channel.__init__, texts, LogError)
         object.__setattr__(self, "t_s", checked("t_s", self.t_s))
         object.__setattr__(self, "values", checked(self.name, self.values))
         if len(self.t_s) != len(self.values):

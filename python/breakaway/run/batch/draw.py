@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway import _core
-from breakaway.base.arguments import check_arguments, check_whole, run_numbers
+from breakaway.base.arguments import check_arguments, check_whole, column_of, run_numbers
 from breakaway.base.free_memory import check_fits
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
@@ -172,18 +172,10 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
 
     """
     check_arguments(grid_columns, locals(), StudyError)
-    columns = [_level_column(path, values) for path, values in levels.items()]
+    columns = [
+        column_of(f"levels[{path!r}]", values, StudyError) for path, values in levels.items()
+    ]
     count = math.prod(map(len, columns))
     check_fits("levels", count, 8.0 * len(levels), "give fewer levels")
     tables = np.meshgrid(*columns, indexing="ij")
     return {path: table.ravel() for path, table in zip(levels, tables, strict=True)}
-
-
-def _level_column(path: str, values: object) -> Array:
-    try:
-        column = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        column = np.zeros(())
-    if column.ndim != 1:
-        raise StudyError(f"levels[{path!r}]: {shown(values)} is not a list of numbers; give one")
-    return column

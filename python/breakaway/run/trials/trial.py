@@ -98,7 +98,8 @@ class Trial(ByValue):
 
         """
         check_arguments(Trial.scenario, locals(), StudyError)
-        row = {name: values[i : i + 1] for name, values in self.parts.items()}
+        place = self._row(i)
+        row = {name: values[place : place + 1] for name, values in self.parts.items()}
         steps = int(steps_per_period(self.population, row)[0])
         base = scenario_of(self.population, self.method, self.law, seed=self.seed, steps=steps)
         columns = part_columns(self.population, self.method, self.law, row)
@@ -119,7 +120,12 @@ class Trial(ByValue):
         from breakaway.run.simulation import simulate
 
         scenario = self.scenario(i).with_({"trace.every_samples": trace_every})
-        return simulate(scenario, run_index=self.runs[i])
+        return simulate(scenario, run_index=self.runs[self._row(i)])
+
+    def _row(self, i: int) -> int:
+        if not -len(self.runs) <= i < len(self.runs):
+            raise StudyError(f"row {i}: the trial has {len(self.runs)} parts")
+        return i % len(self.runs)
 
 
 def run_trial(
