@@ -102,6 +102,51 @@ def test_dataset(rough):
     assert data.attrs["outcome"] == run.outcome
 
 
+def test_a_frame(rough, monkeypatch):
+    run = bk.simulate(rough)
+    frame = run.to_pandas()
+    assert frame.index.name == "t_s"
+    for name in COLUMNS[1:]:
+        np.testing.assert_array_equal(frame[name], run.trace[name])
+    with pytest.raises(bk.ScenarioError, match=r"^trace\.every_samples: is 0"):
+        bk.simulate(rough.with_({"trace.every_samples": 0})).to_pandas()
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(bk.StudyError, match=r"pip install 'breakaway\[pandas\]'"):
+        run.to_pandas()
+
+
+def test_warnings(scenario):
+    assert bk.simulate(scenario).warnings == ()
+    changes = {
+        "limits.diverged_force_n": 400.0,
+        "limits.breakaway_travel_m": 1e-5,
+        "controller.gains": bk.Gains(kp_n_per_m=-1.0, ki_n_per_m_s=1e9, kd_n_s_per_m=700.0),
+    }
+    said = bk.simulate(scenario.with_(changes)).warnings
+    starts = (
+        "diverged at ",
+        "limits.breakaway_travel_m = 10 µm is within the presliding travel 12.5 µm",
+        "controller.gains: one is negative: kp = -1 N/m",
+        "the joint let go at ",
+    )
+    assert len(said) >= 3
+    for sentence in said:
+        assert sentence.startswith(starts) and len(sentence.splitlines()) == 1
+
+
+def test_results_are_shown_in_a_line(scenario):
+    named = scenario.with_(name="<b>5 & 6")
+    for result in (bk.simulate(named), bk.simulate_many(named, 3)):
+        line = repr(result)
+        assert "<b>5 & 6" in line
+        assert "released" in line
+        assert len(line) < 200 and len(line.splitlines()) == 1
+        assert "&lt;b&gt;5 &amp; 6" in result._repr_html_()
+        assert "<b>" not in result._repr_html_()
+    assert len(repr(bk.Samples(values=[1.0] * 100_000))) < 200
+    assert "peak_force_n=" in repr(bk.simulate(named).metrics)
+
+
 def test_designing(scenario):
     gains = bk.design.pole_placement(
         scenario.joint, mass_kg=1.0, settling_time_s=5e-4, damping_ratio=1.0, pole_per_s=200.0
@@ -121,6 +166,20 @@ def test_changing(scenario):
     changed = scenario.with_(disturbance=bk.UniformDisturbance(var=0.05, hold_s=1e-4), seed=7)
     assert (changed.disturbance.var, changed.seed) == (0.05, 7)
     assert bk.simulate(changed).seed == 7
+
+
+def test_importing_is_quick_and_a_star_gives_every_name():
+    """Numbers and tables are loaded with the first name that needs them."""
+    code = (
+        "import sys, breakaway\n"
+        "heavy = {'numpy', 'pyarrow', 'pydantic', 'scipy'} & sys.modules.keys()\n"
+        "assert not heavy, heavy\n"
+        "from breakaway import *\n"
+        "missing = set(breakaway.__all__) - globals().keys()\n"
+        "assert not missing, missing\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("first", ["simulate", "resolve", "impose_motion"])

@@ -358,6 +358,25 @@ def test_every_function_has_a_valid_call(world):
     assert calls(world).keys() == TAKERS.keys()
 
 
+def test_everything_is_shown_in_a_line(world):
+    results = (
+        *("log", "found", "parts", "run", "batch", "trial", "studied", "tuned", "comparison"),
+        *("prediction", "report", "law", "posterior"),
+    )
+    found = world.found
+    shown = vars(world) | {
+        "prediction": found.fit,
+        "report": bk.find_breakaway_events(world.starts[0]),
+        "law": bk.compare_laws(world.log, held_out=(1.0, 1.4), laws=["coulomb"], starts=1)[0],
+        "posterior": bk.Posterior({"coulomb_n": np.ones(10**5)}, 1.0, 0.5, 8, 100, 1.0),
+    }
+    for name in results:
+        line = repr(shown[name])
+        assert re.fullmatch(r"<.{10,200}>", line), line
+        assert shown[name]._repr_html_().startswith("<code>&lt;"), name
+    assert len(repr(world.joint)) < 5000
+
+
 def outcome_of(function, arguments):
     """What is wrong with how a call ends: nothing, if it works or is refused in one line."""
     signature = inspect.signature(function)

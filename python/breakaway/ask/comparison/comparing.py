@@ -20,6 +20,7 @@ from breakaway.ask.studies.folder import prepared
 from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.studies.plan import Row
 from breakaway.base.equality import ByValue
+from breakaway.base.one_line import OneLine, counted
 from breakaway.base.reading import is_folder, is_there
 from breakaway.base.threads import thread_count
 from breakaway.errors import OutputError, StudyError
@@ -32,7 +33,7 @@ DRAWING = "figures and page"
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison(ByValue):
+class Comparison(OneLine, ByValue):
     """A finished comparison: what each method did to the same parts, and what that shows."""
 
     asked: Asked
@@ -47,6 +48,12 @@ class Comparison(ByValue):
     """What has to be known before they are trusted."""
     folder: Path | None
     """Where it is; None where it was not written."""
+
+    def __repr__(self) -> str:
+        asked = self.asked
+        methods, laws = counted(len(asked.names), "method"), counted(len(asked.laws), "law")
+        parts = counted(asked.runs, "part")
+        return f"<comparison on {asked.population.name!r}: {methods}, {laws}, {parts} each>"
 
     def row(self, law: str, method: str) -> Row:
         """Give the row of a method under a law.

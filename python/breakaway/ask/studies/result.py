@@ -18,6 +18,7 @@ from breakaway.ask.studies.parts import part_schema
 from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.study import Study
+from breakaway.base.one_line import OneLine
 from breakaway.base.reading import is_file, is_there
 from breakaway.errors import StudyError
 from breakaway.run.batch.batch import as_pandas
@@ -25,7 +26,7 @@ from breakaway.run.batch.columns import at_run, with_nominal_controller
 from breakaway.run.finished import Run
 
 
-class StudyResult:
+class StudyResult(OneLine):
     """A study in a folder, finished or not. Runs are read when they are asked for."""
 
     def __init__(self, folder: Path) -> None:

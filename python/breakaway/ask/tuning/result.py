@@ -13,13 +13,14 @@ from breakaway.ask.studies.pieces import Pieces
 from breakaway.ask.tuning.evaluation import Evaluation
 from breakaway.ask.tuning.problem import Tuning
 from breakaway.ask.tuning.records import TRIALS, Records
+from breakaway.base.one_line import OneLine
 from breakaway.base.reading import is_file
 from breakaway.errors import StudyError
 from breakaway.model.scenario.files import load_method
 from breakaway.model.scenario.method import Method
 
 
-class TuningResult:
+class TuningResult(OneLine):
     """A tuning in a folder, finished or not."""
 
     def __init__(self, folder: Path) -> None:

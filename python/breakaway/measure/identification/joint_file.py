@@ -156,7 +156,7 @@ class JointFile(Model):
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
     not_identified: dict[str, Text]
-    draws: Draws | None = None
+    draws: Annotated[Draws | None, Field(repr=False)] = None
 
     @classmethod
     def from_fit(cls, fit: InertiaFrictionFit, log: Log) -> JointFile:

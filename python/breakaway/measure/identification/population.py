@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.special import ndtr
 
 from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine, counted
 from breakaway.errors import LogError
 from breakaway.measure.identification.censored import (
     FEWEST_VALUES,
@@ -35,7 +36,7 @@ FIELDS = {"breakaway_force_n": "joint.stiction_n", "sliding_force_n": "joint.cou
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Population:
+class Population(OneLine):
     """How parts differ in what it takes to free them.
 
     Attributes
@@ -69,6 +70,10 @@ class Population:
     refused: tuple[str, ...]
     correlation: float | None
     notes: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        seen = f"{counted(len(self.parts), 'part')}, {counted(self.events, 'event')}"
+        return f"<population: {seen}, fits of {', '.join(self.fits)}>"
 
     def distributions(self) -> dict[str, LogNormal | Normal]:
         """Return the distributions by field of a scenario, for ``vary`` of a study.

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.text import shown
 from breakaway.errors import LogError
 from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.output_error import Problem, Progress
@@ -34,7 +36,7 @@ from breakaway.measure.logs.log import Array, Log
 
 
 @dataclass(frozen=True, eq=False)
-class Identification:
+class Identification(OneLine):
     """A joint as one log tells it.
 
     ``estimates`` are the parameters that were fitted, ``fixed`` those that were held.
@@ -64,6 +66,12 @@ class Identification:
     loss: str
     fit: Prediction
     internals: Internals = field(repr=False)
+
+    def __repr__(self) -> str:
+        told = sum(one.identifiable for one in self.estimates)
+        known = f"{told} of {counted(len(self.estimates), 'parameter')} identifiable"
+        off = f"{self.relative_error_percent:.3g} % off"
+        return f"<{self.law.name} fit of {shown(self.log.name)}: {known}, {off}>"
 
     @property
     def channel(self) -> str:

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from breakaway.base.arguments import check_arguments
-from breakaway.base.text import visible
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.text import shown, visible
 from breakaway.errors import LogError
 
 Array = npt.NDArray[np.float64]
@@ -23,7 +24,7 @@ LARGEST_VALUE = 1e12
 
 
 @dataclass(frozen=True, eq=False)
-class Channel:
+class Channel(OneLine):
     """A measured quantity with its own time stamps.
 
     The arrays are copied and made read-only. Rows count from 1, which is the first sample.
@@ -75,6 +76,9 @@ class Channel:
                 f"column '{self.name}' has {len(self.values)} rows and 't_s' has "
                 f"{len(self.t_s)}; they must have equally many: export them together"
             )
+
+    def __repr__(self) -> str:
+        return f"<channel {shown(self.name)}: {counted(self.rows, 'row')}>"
 
     @property
     def rows(self) -> int:

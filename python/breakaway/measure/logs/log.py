@@ -12,7 +12,8 @@ from types import MappingProxyType
 import numpy.typing as npt
 
 from breakaway.base.arguments import check_arguments
-from breakaway.base.text import brief, visible
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.text import brief, shown, visible
 from breakaway.errors import LogError
 from breakaway.measure.logs import changes
 from breakaway.measure.logs.channel import Array, Channel, checked, named
@@ -26,7 +27,7 @@ MOTION = ("position_m", "force_n", "reference_m", "velocity_m_per_s")
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Log:
+class Log(OneLine):
     """Position and force of one moving part over time, as they were measured.
 
     Nothing is repaired, converted or resampled unless it is asked for; ``history`` says what
@@ -182,6 +183,12 @@ class Log:
         object.__setattr__(self, "sha256", sha256)
         object.__setattr__(self, "ignored_columns", tuple(ignored_columns))
         object.__setattr__(self, "history", tuple(history))
+
+    def __repr__(self) -> str:
+        channels = ", ".join(
+            f"{name} ({counted(one.rows, 'row')})" for name, one in self.channels.items()
+        )
+        return f"<log {shown(self.name)}: {brief(channels)}>"
 
     @property
     def name(self) -> str:

@@ -260,7 +260,7 @@ class Samples(Model):
 
     distribution: Literal["samples"] = "samples"
     """The kind of distribution."""
-    values: Annotated[tuple[float, ...], Field(min_length=1, strict=False)]
+    values: Annotated[tuple[float, ...], Field(min_length=1, strict=False, repr=False)]
     """The values."""
     rows: Literal["independent", "shared"] = "independent"
     """Whether a value is taken on its own, or from the same row of the table as those of the other

@@ -5,11 +5,11 @@ from __future__ import annotations
 import difflib
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import tomli_w
 
-from breakaway.base.arguments import check_arguments
+from breakaway.base.arguments import check_arguments, check_choice
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import table_of, text_of
 from breakaway.errors import ScenarioError
@@ -22,11 +22,11 @@ from breakaway.model.scenario.scenario import Scenario
 AnyModel = TypeVar("AnyModel", bound=Model)
 
 PRESETS = files("breakaway.model.presets")
-Presets = Literal["", "populations", "methods", "stacks"]
-"""Folder of presets; that of scenarios has no name."""
+FOLDERS = ("", "populations", "methods", "stacks")
+"""Folders of presets; that of scenarios has no name."""
 
 
-def preset_names(folder: Presets = "") -> list[str]:
+def preset_names(folder: str = "") -> list[str]:
     """Names of the presets that come with breakaway.
 
     Parameters
@@ -35,7 +35,7 @@ def preset_names(folder: Presets = "") -> list[str]:
         Which presets: scenarios, where it is left out.
 
     """
-    check_arguments(preset_names, locals(), ScenarioError)
+    check_choice("folder", folder, FOLDERS, ScenarioError)
     presets = PRESETS / folder if folder else PRESETS
     return sorted(p.name.removesuffix(".toml") for p in presets.iterdir() if p.name[-5:] == ".toml")
 
@@ -140,7 +140,7 @@ def load_stack(source: str | Path) -> Piezo:
     return _load(Piezo, source, "stacks")
 
 
-def _load(model: type[AnyModel], source: str | Path, folder: Presets) -> AnyModel:
+def _load(model: type[AnyModel], source: str | Path, folder: str) -> AnyModel:
     if isinstance(source, str) and source in preset_names(folder):
         text = PRESETS.joinpath(*folder.split(), f"{source}.toml").read_text(encoding="utf-8")
         return parse_toml(model, text, source)

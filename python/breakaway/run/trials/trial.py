@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from breakaway.base.arguments import check_arguments, run_numbers
 from breakaway.base.equality import ByValue
+from breakaway.base.one_line import OneLine, counted
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.method import Method
@@ -48,7 +49,7 @@ TRIAL_METRICS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Trial(ByValue):
+class Trial(OneLine, ByValue):
     """A method on parts of a population, as columns: one value for each part."""
 
     population: PartPopulation
@@ -65,6 +66,11 @@ class Trial(ByValue):
     """The parts' quantities."""
     metrics: Mapping[str, Array]
     """What became of them. What did not happen is not a number."""
+
+    def __repr__(self) -> str:
+        parts = counted(len(self.runs), "part")
+        where = f"{self.method.name!r} on {self.population.name!r}, {self.law}"
+        return f"<trial of {where}: {int(self.released.sum()):,} of {parts} released>"
 
     @property
     def released(self) -> NDArray[np.bool_]:
