@@ -10,6 +10,12 @@ import pytest
 
 import breakaway as bk
 
+
+@pytest.fixture(scope="module")
+def scenario():
+    return bk.load_scenario("paper_as_computed")
+
+
 HOMES = [(bk, name) for name in bk.__all__] + [(bk.design, name) for name in bk.design.__all__]
 
 

@@ -87,9 +87,7 @@ def _fits(value: object, hint: Any) -> bool:  # noqa: ANN401 - any annotation
     if origin is Callable:
         return callable(value)
     if origin in (Sequence, Iterable, list, tuple):
-        listed = isinstance(value, Iterable if origin is Iterable else Sequence)
-        few = isinstance(value, Sequence) and all(_fits(one, inner[0]) for one in value)
-        return listed and not isinstance(value, str) and (few or not isinstance(value, Sequence))
+        return _is_list(value, origin, inner[0])
     if origin in (Mapping, dict):
         return isinstance(value, Mapping) and all(_fits(key, inner[0]) for key in value)
     if hint in (int, float):
@@ -99,6 +97,15 @@ def _fits(value: object, hint: Any) -> bool:  # noqa: ANN401 - any annotation
     if isinstance(origin, type):  # such as an array of numbers
         return isinstance(value, origin)
     return not _is_class(hint) or isinstance(value, hint)
+
+
+def _is_list(value: object, origin: object, element: object) -> bool:
+    """Whether a value is a list of its kind; words of which some are known are left to others."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return False
+    if not isinstance(value, Sequence):
+        return origin is Iterable  # which looking at would use up
+    return get_origin(element) is Literal or all(_fits(one, element) for one in value)
 
 
 def _all_fit(values: Sequence[object], hints: Sequence[object]) -> bool:
@@ -146,7 +153,9 @@ def _words(hint: Any) -> str:  # noqa: ANN401 - any annotation
         return f"a pair of {_PLURALS[inner[0]]}"
     if origin in (Sequence, Iterable, list, tuple):
         kind = _alternatives(inner[0])[-1]
-        return f"a list of {_PLURALS.get(kind, getattr(kind, '__name__', 'pairs'))}"
+        if get_origin(kind) is tuple:
+            return "a list of pairs of numbers"
+        return f"a list of {_PLURALS.get(kind, getattr(kind, '__name__', 'names'))}"
     if origin in (Mapping, dict):
         return "a mapping"
     if hint in _WORDS:
