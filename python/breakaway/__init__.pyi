@@ -4,6 +4,7 @@ from breakaway import design as design
 from breakaway._core import __version__ as __version__
 from breakaway.ask.comparison import Comparison as Comparison
 from breakaway.ask.comparison import compare_methods as compare_methods
+from breakaway.ask.durable.progress import Progress as Progress
 from breakaway.ask.studies import AgreementStudy as AgreementStudy
 from breakaway.ask.studies import AgreementTable as AgreementTable
 from breakaway.ask.studies import AgreementVariant as AgreementVariant
@@ -15,7 +16,6 @@ from breakaway.ask.studies import RobustnessTable as RobustnessTable
 from breakaway.ask.studies import SensitivityStudy as SensitivityStudy
 from breakaway.ask.studies import SensitivityTable as SensitivityTable
 from breakaway.ask.studies import SmallestTable as SmallestTable
-from breakaway.ask.studies import StudyProgress as StudyProgress
 from breakaway.ask.studies import StudyResult as StudyResult
 from breakaway.ask.studies import SweepStudy as SweepStudy
 from breakaway.ask.studies import SweepTable as SweepTable
@@ -63,6 +63,8 @@ from breakaway.measure.logs import Log as Log
 from breakaway.measure.logs import derive_motion as derive_motion
 from breakaway.measure.logs import noise_floor as noise_floor
 from breakaway.measure.logs import read_log as read_log
+from breakaway.model.friction.imposed import ImposedMotion as ImposedMotion
+from breakaway.model.friction.imposed import impose_motion as impose_motion
 from breakaway.model.scenario import BandLimitedDisturbance as BandLimitedDisturbance
 from breakaway.model.scenario import Contact as Contact
 from breakaway.model.scenario import CoulombStiction as CoulombStiction
@@ -128,8 +130,6 @@ from breakaway.run.batch import simulate_many as simulate_many
 from breakaway.run.finished import Outcome as Outcome
 from breakaway.run.finished import Run as Run
 from breakaway.run.finished import RunMetrics as RunMetrics
-from breakaway.model.friction.imposed import ImposedMotion as ImposedMotion
-from breakaway.model.friction.imposed import impose_motion as impose_motion
 from breakaway.run.overlay import lay_over as lay_over
 from breakaway.run.resolution import resolve as resolve
 from breakaway.run.simulation import simulate as simulate

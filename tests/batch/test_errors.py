@@ -117,9 +117,7 @@ def test_one_value_for_each_run(refusal, values, shape):
     )
 
 
-@pytest.mark.parametrize(
-    "values", ["text", {"distribution": "uniform"}, [object()], [[1.0], 2.0]]
-)
+@pytest.mark.parametrize("values", ["text", {"distribution": "uniform"}, [object()], [[1.0], 2.0]])
 def test_neither_a_distribution_nor_numbers(refusal, values):
     message = refusal(vary={STICTION: values})
     assert message == (f"vary['{STICTION}']: {values!r} is neither a distribution nor numbers")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -119,48 +118,12 @@ def _show(finished: Run) -> None:
 
 
 def _notes(finished: Run, out: Path | None) -> list[str]:
-    notes = [*_warnings(finished)]
+    notes = [*finished.warnings]
     if out is not None and not finished.trace:
         notes.append("no trace and no figure: trace.every_samples is 0")
     if out is None:
         notes.append("--out DIR keeps trace, figure and the scenario that reruns this")
     return notes
-
-
-def _warnings(finished: Run) -> Iterator[str]:
-    """What a user should know before trusting the figures."""
-    from breakaway.model.scenario import Gains, gain_sets
-
-    scenario, m = finished.scenario, finished.metrics
-    limits = scenario.limits
-    if finished.outcome == "diverged":
-        for name, value, field in (
-            ("largest_error_m", m.largest_error_m, "diverged_error_m"),
-            ("peak_force_n", m.peak_force_n, "diverged_force_n"),
-        ):
-            limit = getattr(limits, field)
-            if not value <= limit:
-                yield (
-                    f"diverged at {show('t_s', m.simulated_s)}: {split_unit(name)[0]} "
-                    f"{show(name, value)} is above limits.{field} = {show(name, limit)}"
-                )
-    presliding_m = scenario.joint.stiction_n / scenario.joint.stiffness_n_per_m
-    if limits.breakaway_travel_m is not None and limits.breakaway_travel_m <= presliding_m:
-        yield (
-            f"limits.breakaway_travel_m = {show('x_m', limits.breakaway_travel_m)} is within the "
-            f"presliding travel {show('x_m', presliding_m)}: a stuck joint counts as loose"
-        )
-    for which, gains in gain_sets(scenario.controller).items():
-        if isinstance(gains, Gains) and min(gains.kp_n_per_m, gains.kd_n_s_per_m) < 0.0:
-            yield (
-                f"controller.{which}: one is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
-                f"{gains.kd_n_s_per_m:.4g} N s/m; see `breakaway design`"
-            )
-    if scenario.joint.law == "lugre" and m.time_to_breakaway_s > 0 and m.peak_over_breakaway < 1:
-        yield (
-            f"the joint let go at {m.peak_over_breakaway:.2f} of stiction_n: LuGre friction creeps "
-            "under a rising force; compare with law = 'two_region' before sizing an actuator"
-        )
 
 
 def _show_json(finished: Run, files: list[Path], overlay: Overlay | None) -> None:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import tomli_w
 
+from breakaway.base.arguments import check_arguments, check_choice
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import table_of, text_of
 from breakaway.errors import ScenarioError
@@ -21,6 +22,8 @@ from breakaway.model.scenario.scenario import Scenario
 AnyModel = TypeVar("AnyModel", bound=Model)
 
 PRESETS = files("breakaway.model.presets")
+FOLDERS = ("", "populations", "methods", "stacks")
+"""Folders of presets; that of scenarios has no name."""
 
 
 def preset_names(folder: str = "") -> list[str]:
@@ -32,6 +35,7 @@ def preset_names(folder: str = "") -> list[str]:
         Which presets: scenarios, where it is left out.
 
     """
+    check_choice("folder", folder, FOLDERS, ScenarioError)
     presets = PRESETS / folder if folder else PRESETS
     return sorted(p.name.removesuffix(".toml") for p in presets.iterdir() if p.name[-5:] == ".toml")
 
@@ -60,6 +64,7 @@ def load_scenario(source: str | Path) -> Scenario:
     breakaway.errors.ScenarioError: paper_as_computd: ... did you mean paper_as_computed?
 
     """
+    check_arguments(load_scenario, locals(), ScenarioError)
     return _load(Scenario, source, "")
 
 
@@ -82,6 +87,7 @@ def load_population(source: str | Path) -> PartPopulation:
     10.0
 
     """
+    check_arguments(load_population, locals(), ScenarioError)
     return _load(PartPopulation, source, "populations")
 
 
@@ -104,6 +110,7 @@ def load_method(source: str | Path) -> Method:
     'feed_axis'
 
     """
+    check_arguments(load_method, locals(), ScenarioError)
     return _load(Method, source, "methods")
 
 
@@ -129,6 +136,7 @@ def load_stack(source: str | Path) -> Piezo:
     3800
 
     """
+    check_arguments(load_stack, locals(), ScenarioError)
     return _load(Piezo, source, "stacks")
 
 
@@ -189,6 +197,7 @@ def save_scenario(scenario: Scenario, path: str | Path) -> None:
         The file can not be written.
 
     """
+    check_arguments(save_scenario, locals(), ScenarioError)
     write_atomically(Path(path), scenario_toml(scenario).encode())
 
 
