@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from breakaway.cli.quantity import show_uncertain, show_value, split_unit
-from breakaway.cli.show import Sheet, plain, say
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import plain, say
 from breakaway.run.finished import RunMetrics
 
 Call = Callable[..., Any]

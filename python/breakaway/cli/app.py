@@ -14,10 +14,11 @@ from breakaway.cli.design import design
 from breakaway.cli.events import events
 from breakaway.cli.export import export
 from breakaway.cli.identify import identify
+from breakaway.cli.presets import presets
 from breakaway.cli.reproduce import reproduce
 from breakaway.cli.run import run
-from breakaway.cli.scenarios import init, presets, schema
 from breakaway.cli.show import say, say_aside
+from breakaway.cli.starting import init, schema
 from breakaway.cli.streams import ClosedOutput
 from breakaway.cli.study import study
 from breakaway.cli.tune import tune
@@ -77,7 +78,6 @@ app = typer.Typer(
     cls=Commands,
     help=HELP,
     epilog=EPILOG,
-    add_completion=False,
     no_args_is_help=True,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
@@ -97,7 +97,9 @@ def _print_version(asked: bool) -> None:
 def _options(
     _version: Annotated[
         bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+        typer.Option(
+            "--version", "-V", callback=_print_version, is_eager=True, help="Show the version."
+        ),
     ] = False,
 ) -> None:
     pass
@@ -163,11 +165,13 @@ app.command(
     epilog=_examples(
         "breakaway init my_joint.toml",
         "breakaway init my_joint.toml --preset paper_as_printed --force",
+        "breakaway init my_method.toml --kind method --preset timed_impacts",
+        "breakaway init sweep.toml --kind sweep --preset my_joint.toml",
     )
 )(init)
-app.command(epilog=_examples("breakaway schema", "breakaway schema --out scenario.schema.json"))(
-    schema
-)
+app.command(
+    epilog=_examples("breakaway schema --out scenario.schema.json", "breakaway schema --kind study")
+)(schema)
 app.command(
     epilog=_examples(
         "breakaway reproduce",

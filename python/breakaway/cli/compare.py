@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
+from breakaway.cli.completion import friction_laws, method_preset, population_preset
+from breakaway.cli.options import Json, Threads
 from breakaway.cli.progress import shown_progress
-from breakaway.cli.show import Sheet, busy, say, say_aside, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, say, say_aside, say_json, say_written
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -27,7 +30,10 @@ BEST = " *"
 
 def compare(
     population: Annotated[
-        str, typer.Argument(help="Name of a preset, or path of a TOML file.")
+        str,
+        typer.Argument(
+            help="Name of a preset, or path of a TOML file.", autocompletion=population_preset
+        ),
     ] = "seized_parts",
     out: Annotated[
         Path, typer.Option(help="Folder for parts, table, figures, page.", metavar="DIR")
@@ -41,6 +47,7 @@ def compare(
         typer.Option(
             help="A method: name of a preset, or a TOML file; repeatable. Left out: all presets.",
             metavar="NAME_OR_FILE",
+            autocompletion=method_preset,
         ),
     ] = None,
     laws: Annotated[
@@ -48,6 +55,7 @@ def compare(
         typer.Option(
             help="Friction laws, with commas or repeated. Left out: lugre,elasto_plastic,gms.",
             metavar="LAWS",
+            autocompletion=friction_laws,
         ),
     ] = None,
     baseline: Annotated[
@@ -55,15 +63,14 @@ def compare(
         typer.Option(
             help="A method to measure the others by; repeatable, the best counts. Left out: all.",
             metavar="NAME",
+            autocompletion=method_preset,
         ),
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a comparison that DIR holds.")
     ] = False,
-    threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    threads: Threads = None,
+    json: Json = False,
 ) -> None:
     """Try methods of extraction on the same parts of a population, under several friction laws.
 
@@ -155,8 +162,7 @@ def _show(done: Comparison) -> None:
         say(sentence)
     for note in done.notes:
         say(f"note: {note}")
-    for path in _files(done):
-        say(f"wrote {path}")
+    say_written(_files(done))
 
 
 def _files(done: Comparison) -> Sequence[Path]:

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from breakaway.cli.options import Json, ScenarioName
 from breakaway.cli.quantity import show, show_digits
-from breakaway.cli.show import Sheet, busy, plain, say, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, plain, say, say_json, say_written
 
 if TYPE_CHECKING:
     from breakaway.design import (
@@ -80,7 +82,7 @@ class Judged:
 
 
 def design(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for design.json and the figures.", metavar="DIR"),
@@ -92,7 +94,7 @@ def design(
             help="Exit with 4 unless every gain set is stable, stuck and sliding.",
         ),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
     """Show a controller's gains, margins and poles, and whether it is stable.
 
@@ -124,8 +126,7 @@ def design(
         say_json(content | {"files": [str(path) for path in files]})
     else:
         _show_all(asked, judged)
-        for path in files:
-            say(f"wrote {path}")
+        say_written(files)
     if require_stable and not stable:
         raise typer.Exit(NOT_STABLE)
 

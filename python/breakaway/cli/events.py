@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from breakaway.cli.quantity import memory_bytes, show
-from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.cli.measured import measured
+from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Use
+from breakaway.cli.quantity import show
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, say, say_json
 
 if TYPE_CHECKING:
     from breakaway.measure.identification import BreakawayReport, Population
@@ -17,10 +20,7 @@ if TYPE_CHECKING:
 
 def events(
     logs: Annotated[list[Path], typer.Argument(help="Measured logs.", metavar="LOG...")],
-    use: Annotated[
-        list[str] | None,
-        typer.Option(help="Another channel of the log as a channel.", metavar="CHANNEL=OTHER"),
-    ] = None,
+    use: Use = None,
     passed_share: Annotated[
         float,
         typer.Option(
@@ -30,25 +30,9 @@ def events(
             "peak counts as a lower bound.",
         ),
     ] = 0.5,
-    mapping: Annotated[
-        Path | None,
-        typer.Option(
-            help="TOML file that names channels, units and signs.",
-            metavar="FILE",
-            show_default="LOG with .toml, if it is there",
-        ),
-    ] = None,
-    memory_gib: Annotated[
-        float | None,
-        typer.Option(
-            help="Most memory in GiB that the content of a log may take.",
-            show_default="half of what is free",
-        ),
-    ] = None,
-    resample_hz: Annotated[
-        float | None,
-        typer.Option(help="Bring channels of different stamps to this rate, by interpolation."),
-    ] = None,
+    mapping: MappingFile = None,
+    memory_gib: MemoryGib = None,
+    resample_hz: ResampleHz = None,
     population: Annotated[
         bool,
         typer.Option(
@@ -56,7 +40,7 @@ def events(
             help="Fit how breakaway differs from log to log, each a part of its own.",
         ),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
     """Find breakaway in logs: force, presliding, loading rate, and what is only a lower bound.
 
@@ -64,19 +48,13 @@ def events(
     force is taken as it was measured: inertia is not subtracted.
     """
     from breakaway.measure.identification import find_breakaway_events, fit_population
-    from breakaway.measure.logs import read_log
 
     reports, hints = [], []
     with busy("looking for breakaway ..."):
         for path in logs:
-            log = read_log(path, mapping, memory_bytes=memory_bytes(memory_gib))
-            if resample_hz is not None:
-                log = log.resampled(rate_hz=resample_hz)
-            for pair in use or []:
-                channel, sign, other = pair.partition("=")
-                if not (channel and sign and other):
-                    raise typer.BadParameter(f"--use {pair!r} is not of the form CHANNEL=OTHER")
-                log = log.using(**{channel: other})
+            log = measured(
+                path, mapping=mapping, memory_gib=memory_gib, resample_hz=resample_hz, use=use
+            )
             reports.append(find_breakaway_events(log, passed_share=passed_share))
             if not use and "friction_n" in log.channels:
                 hints.append(

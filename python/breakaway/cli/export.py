@@ -9,7 +9,8 @@ from typing import Annotated
 
 import typer
 
-from breakaway.cli.show import busy, say, say_json
+from breakaway.cli.options import Json, ScenarioName
+from breakaway.cli.show import busy, say, say_json, say_written
 
 export = typer.Typer(
     help="Write a scenario's controller or plant as code that runs elsewhere.",
@@ -42,13 +43,13 @@ class Fmi(StrEnum):
 
 @export.command("c")
 def export_c(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="Folder for the files.", metavar="DIR")],
     what: Annotated[
         What, typer.Option(help="The controller with its reference, the plant, or both closed.")
     ] = What.CONTROLLER,
     real: Annotated[Real, typer.Option(help="The real type of the code.")] = Real.DOUBLE,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
     """Write self-contained C99: header, source, test program, CMakeLists.txt, README.
 
@@ -66,8 +67,7 @@ def export_c(
         files = [str(path) for path in written.files]
         say_json({"what": written.what, "real": written.real, "files": files})
         return
-    for path in written.files:
-        say(f"wrote {path}")
+    say_written(written.files)
     source, build = shlex.quote(str(out)), shlex.quote(str(out / "build"))
     say(
         f"Build and test it: cmake -S {source} -B {build} && cmake --build {build} && "
@@ -77,13 +77,13 @@ def export_c(
 
 @export.command("fmu")
 def export_fmu(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="The file, such as rig.fmu.", metavar="FILE.fmu")],
     what: Annotated[
         What, typer.Option(help="The controller with its reference, the plant, or both closed.")
     ] = What.CONTROLLER,
     fmi: Annotated[Fmi, typer.Option(help="Version of the FMI standard.")] = Fmi.THREE,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
     """Write a unit for co-simulation (FMU): sources, and the library for this host.
 

@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from breakaway.cli.quantity import show, show_uncertain, split_unit
-from breakaway.cli.show import Sheet
+from breakaway.cli.sheet import Sheet
 
 if TYPE_CHECKING:
     from pathlib import Path

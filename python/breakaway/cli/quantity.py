@@ -127,12 +127,3 @@ def _matched(name: str) -> tuple[str, str, bool]:
         if name.endswith(suffix):
             return name.removesuffix(suffix), unit, prefixed
     return name, "", False
-
-
-def memory_bytes(memory_gib: float | None) -> float | None:
-    """Return what ``--memory-gib`` says, in bytes.
-
-    >>> memory_bytes(2.0)
-    2147483648.0
-    """
-    return None if memory_gib is None else memory_gib * 2**30

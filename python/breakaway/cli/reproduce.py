@@ -9,7 +9,8 @@ import typer
 
 from breakaway.base.reading import is_there
 from breakaway.cli.progress import shown_progress
-from breakaway.cli.show import Sheet, say, say_aside
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import say, say_aside
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from breakaway.cli.options import Json, ScenarioName
 from breakaway.cli.quantity import show, show_value, split_unit
-from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, say, say_json, say_written
 
 if TYPE_CHECKING:
     from breakaway.cli.overlay import Overlay
@@ -33,7 +35,7 @@ MEANING = {
 
 
 def run(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for scenario, metrics, trace and figure.", metavar="DIR"),
@@ -47,7 +49,7 @@ def run(
     seed: Annotated[
         int | None, typer.Option(help="Seed of all random draws, in place of the scenario's.")
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
     """Simulate one extraction and show its figures.
 
@@ -79,8 +81,7 @@ def run(
     _show(finished)
     for note in _notes(finished, out):
         say(note)
-    for path in files:
-        say(f"wrote {path}")
+    say_written(files)
 
 
 def _simulate(scenario: Scenario, out: Path | None) -> tuple[Run, list[Path]]:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
+from breakaway.cli.options import Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
-from breakaway.cli.show import Sheet, say, say_aside, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import say, say_aside, say_json, say_written
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -31,10 +33,8 @@ def study(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a study that DIR holds.")
     ] = False,
-    threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    threads: Threads = None,
+    json: Json = False,
 ) -> None:
     """Run many simulations that answer one question.
 
@@ -75,8 +75,7 @@ def study(
     for note in summary["notes"]:
         say(f"note: {note}")
     say(f"wrote {len(done.part_files)} parts to {out / 'parts'}")
-    for path in files:
-        say(f"wrote {path}")
+    say_written(files)
 
 
 def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
@@ -97,7 +96,7 @@ def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
     for name, rows in tables.items():
         sheet = make[name](rows)
         shown.append(sheet)
-        if sheet.row_count == ROWS_MAX:
+        if len(sheet.rows) == ROWS_MAX:
             shown.append(f"the first {ROWS_MAX} rows; {name}.csv has all")
     return shown
 
@@ -105,7 +104,7 @@ def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
 def _points(rows: Sequence[Mapping[str, Any]], labels: list[str], metrics: Sequence[str]) -> Sheet:
     seen = [name for name in OUTCOMES if any(row[name] for row in rows)]
     columns = [*labels, "runs", *seen, *(f"{split_unit(name)[0]}: median" for name in metrics)]
-    sheet = Sheet("", columns, numbers=columns)
+    sheet = Sheet("", columns, numbers=columns, labels=len(labels))
     for row in rows[:ROWS_MAX]:
         sheet.add(
             *(_level(row[name]) for name in labels),

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
+from breakaway.cli.options import Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
-from breakaway.cli.show import Sheet, say, say_aside, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import say, say_aside, say_json, say_written
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -30,10 +32,8 @@ def tune(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the tuning that DIR holds.")
     ] = False,
-    threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    threads: Threads = None,
+    json: Json = False,
 ) -> None:
     """Tune a method on parts of a population, and score it on parts that tuning never saw.
 
@@ -78,8 +78,7 @@ def tune(
         say(sentence)
     for note in summary["notes"]:
         say(f"note: {note}")
-    for path in files:
-        say(f"wrote {path}")
+    say_written(files)
 
 
 def _told(progress: Callable[[StudyProgress], None]) -> Callable[[TuningProgress], None]:
