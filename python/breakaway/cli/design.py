@@ -206,6 +206,7 @@ def _show(one: Judged) -> None:
         f"Stability of {one.role}",
         ["joint", "verdict", "poles (1/s)", "because"],
         prose=["because"],
+        labels=1,
     )
     for regime, loop in (("stuck", one.verdict.stuck), ("sliding", one.verdict.sliding)):
         if loop is None:
@@ -229,6 +230,7 @@ def _margins_sheet(one: Judged) -> Sheet:
         f"As {one.role} runs: {_timing(one.pid)}; loop opened at the force",
         ["joint", "verdict", *numbers, "poles (1/s)"],
         numbers=numbers,
+        labels=1,
     )
     for loop in one.loops:
         found = loop.margins

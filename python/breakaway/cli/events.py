@@ -100,7 +100,7 @@ def _table(reports: list[BreakawayReport]) -> Sheet:
 
 
 def _population(found: Population) -> Sheet:
-    shown = Sheet("Population", ["figure", "parameter", "value", "95 % interval"])
+    shown = Sheet("Population", ["figure", "parameter", "value", "95 % interval"], labels=2)
     for name, fit in found.fits.items():
         for parameter, value in fit.parameters.items():
             low, high = fit.interval[parameter]

@@ -9,13 +9,25 @@ from typing import Annotated
 
 import typer
 
+from breakaway.cli.help import add_command, unwrapped
 from breakaway.cli.options import Json, ScenarioName
 from breakaway.cli.show import busy, say, say_json, say_written
 
+EXPORT = "Write a scenario's controller or plant as code that runs elsewhere."
+
+
 export = typer.Typer(
-    help="Write a scenario's controller or plant as code that runs elsewhere.",
+    help=EXPORT,
     no_args_is_help=True,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
+    epilog=unwrapped(
+        "Examples",
+        [
+            "breakaway export c paper_as_computed --out rig",
+            "breakaway export c my_joint.toml --what loop --out rig",
+            "breakaway export fmu paper_as_computed --out rig.fmu",
+        ],
+    ),
 )
 
 
@@ -41,7 +53,6 @@ class Fmi(StrEnum):
     THREE = "3"
 
 
-@export.command("c")
 def export_c(
     scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="Folder for the files.", metavar="DIR")],
@@ -75,7 +86,6 @@ def export_c(
     )
 
 
-@export.command("fmu")
 def export_fmu(
     scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="The file, such as rig.fmu.", metavar="FILE.fmu")],
@@ -102,3 +112,19 @@ def export_fmu(
         say_json({**told, "binary": written.binary, "note": written.note})
         return
     say(f"wrote {written.path}: FMI {written.fmi}, {written.binary or written.note}")
+
+
+add_command(
+    export,
+    export_c,
+    "breakaway export c paper_as_computed --what controller --out rig",
+    "breakaway export c my_joint.toml --what loop --real float --out rig",
+    name="c",
+)
+add_command(
+    export,
+    export_fmu,
+    "breakaway export fmu paper_as_computed --out rig.fmu",
+    "breakaway export fmu my_joint.toml --what plant --fmi 2 --out plant.fmu",
+    name="fmu",
+)

@@ -66,8 +66,8 @@ class Sheet:
     def fitted(self, width: int) -> list[RenderableType]:
         """Give what to print, for a width in characters.
 
-        A table that is too wide becomes several, which all begin with its labels; where labels
-        leave less than half of the width, each row becomes lines of its own.
+        A table that is too wide becomes several, which all begin with its labels. Where labels
+        leave less than a third of the width, each row becomes lines of its own.
         """
         heading: list[RenderableType] = []
         if self.title:
@@ -80,7 +80,7 @@ class Sheet:
     def _pieces(self, width: int) -> list[Table]:
         """Give tables that fit, none where labels or a single column are too wide."""
         labels = [*range(self.labels)]
-        if narrowest(self._table(labels)) > width // 2:
+        if narrowest(self._table(labels)) > 2 * width // 3:
             return []
         groups: list[list[int]] = [[]]
         for column in range(self.labels, len(self.columns)):
@@ -111,6 +111,7 @@ class Sheet:
         table = Table.grid(padding=(0, 2, 0, 0))
         table.add_column(overflow="fold")
         table.add_column(overflow="fold")
+        table.add_row("", "")
         for row in self.rows:
             for name, cell in zip(self.columns, row, strict=True):
                 if cell.plain:

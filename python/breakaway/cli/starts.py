@@ -172,7 +172,8 @@ def _tuning(preset: str, label: Mapping[str, str], method: Method) -> Start:
             "objectives": ["strict_share", "median_time_to_release_s"],
             "constraints": {"released_share": {"at_least": 0.9}},
             "tune": _half_to_double(method),
-            "training_runs": 32,
+            "training_runs": 16,
+            "test_runs": {"first": 1_000_000, "runs": 200},
         }
     )
     return Start(model, "A tuning of a method.", {"population": population, "method": preset})

@@ -175,7 +175,7 @@ def _differences(rows: Sequence[Mapping[str, Any]], metrics: Sequence[str]) -> S
 def _conclusions(rows: Sequence[Mapping[str, Any]]) -> Sheet:
     parts = [name for name in rows[0] if name.startswith("verdict_")]
     words = [name.removeprefix("verdict_").replace("_", " ") for name in parts]
-    sheet = Sheet("", ["of", "than", "quantity", "goes", "verdict", *words])
+    sheet = Sheet("", ["of", "than", "quantity", "goes", "verdict", *words], labels=3)
     for row in rows[:ROWS_MAX]:
         sheet.add(
             row["other"],
