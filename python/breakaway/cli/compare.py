@@ -36,16 +36,16 @@ def compare(
         ),
     ] = "seized_parts",
     out: Annotated[
-        Path, typer.Option(help="Folder for parts, table, figures, page.", metavar="DIR")
+        Path, typer.Option(help="Folder for the results: table, figures, page.", metavar="DIR")
     ] = Path("comparison"),
     runs: Annotated[
-        int | None, typer.Option(help="Parts that each method tries. Left out: 10,000.")
+        int | None, typer.Option(help="How many parts each method gets. Left out: 10,000.")
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the parts. Left out: 0.")] = None,
     method: Annotated[
         list[str] | None,
         typer.Option(
-            help="A method: name of a preset, or a TOML file; repeatable. Left out: all presets.",
+            help="Method: name of a preset, or a TOML file; repeatable. Left out: all presets.",
             metavar="NAME_OR_FILE",
             autocompletion=method_preset,
         ),
@@ -61,24 +61,24 @@ def compare(
     baseline: Annotated[
         list[str] | None,
         typer.Option(
-            help="A method to measure the others by; repeatable, the best counts. Left out: all.",
+            help="Method to compare others with; repeatable, the best counts. Left out: all.",
             metavar="NAME",
             autocompletion=method_preset,
         ),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a comparison that DIR holds.")
+        bool, typer.Option("--resume", help="Continue the comparison in DIR.")
     ] = False,
     threads: Threads = None,
     json: Json = False,
 ) -> None:
     """Try methods of extraction on the same parts of a population, under several friction laws.
 
-    POPULATION is the name of a preset or a TOML file: of a population, or the
-    comparison.toml of an earlier comparison, which is then run again. The
-    folder receives the parts as they finish (Parquet), and in the end
-    table.csv, figures, and index.html, a page that needs no network. A
-    comparison that was interrupted goes on with --resume and computes nothing
+    POPULATION is a preset or a TOML file of a population. It can also be the
+    comparison.toml of an earlier comparison, which is then run again.
+    Results are saved as they finish (Parquet). At the end the folder also
+    holds table.csv, figures, and index.html, a page that needs no network.
+    An interrupted comparison continues with --resume and computes nothing
     twice.
     """
     from breakaway.ask.comparison import compare_methods
@@ -157,7 +157,7 @@ def _show(done: Comparison) -> None:
         say(_outcomes(law, rows), _harm(law, rows))
         if stack:
             say(_wear(law, rows))
-    say("*: best of its column; time, jump, force and velocity among those that free 90 %")
+    say("*: best of its column; time, jump, force and velocity: among methods that free 90 %")
     for sentence in done.result:
         say(sentence)
     for note in done.notes:

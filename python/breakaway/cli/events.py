@@ -26,8 +26,8 @@ def events(
         typer.Option(
             min=0.0,
             max=1.0,
-            help="Share of the fall from the peak to sliding that must have been recorded, or the "
-            "peak counts as a lower bound.",
+            help="Share of the fall from peak to sliding that must be recorded; otherwise the peak "
+            "counts as a lower bound.",
         ),
     ] = 0.5,
     mapping: MappingFile = None,
@@ -37,15 +37,15 @@ def events(
         bool,
         typer.Option(
             "--population",
-            help="Fit how breakaway differs from log to log, each a part of its own.",
+            help="Fit how breakaway differs from log to log; each log is one part.",
         ),
     ] = False,
     json: Json = False,
 ) -> None:
-    """Find breakaway in logs: force, presliding, loading rate, and what is only a lower bound.
+    """Find breakaway in logs: force, presliding, loading rate, and which are lower bounds.
 
-    A log that begins moving is refused for breakaway, with the reason. The
-    force is taken as it was measured: inertia is not subtracted.
+    A log in which the part already moves at the start is refused, with the
+    reason. The force is used as measured: inertia is not subtracted.
     """
     from breakaway.measure.identification import find_breakaway_events, fit_population
 
@@ -58,7 +58,7 @@ def events(
             reports.append(find_breakaway_events(log, passed_share=passed_share))
             if not use and "friction_n" in log.channels:
                 hints.append(
-                    f"- {log.name}: force_n is used; --use force_n=friction_n takes friction"
+                    f"- {log.name}: this uses force_n; --use force_n=friction_n takes friction"
                 )
         found = fit_population(reports, passed_share=passed_share) if population else None
     if json:
@@ -80,7 +80,7 @@ def events(
 
 def _table(reports: list[BreakawayReport]) -> Sheet:
     columns = ["log", "time", "breakaway", "", "sliding", "ratio", "presliding", "loading"]
-    shown = Sheet("Breakaway, less the offset", columns, numbers=columns[1:3] + columns[4:])
+    shown = Sheet("Breakaway, offset subtracted", columns, numbers=columns[1:3] + columns[4:])
     for report in reports:
         for event in report.events:
             rate = event.loading_rate_n_per_s

@@ -57,16 +57,16 @@ def export_c(
     scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="Folder for the files.", metavar="DIR")],
     what: Annotated[
-        What, typer.Option(help="The controller with its reference, the plant, or both closed.")
+        What, typer.Option(help="Controller with its reference, plant, or the closed loop of both.")
     ] = What.CONTROLLER,
     real: Annotated[Real, typer.Option(help="The real type of the code.")] = Real.DOUBLE,
     json: Json = False,
 ) -> None:
     """Write self-contained C99: header, source, test program, CMakeLists.txt, README.
 
-    The code computes the same bits as the simulation in the same real type,
-    without allocation, and its numbers are parameters that may be changed at
-    run time. Kinds and options of the scenario are fixed in it.
+    The code computes the same bits as the simulation in the same real type
+    and does not allocate memory. The scenario's numbers are parameters that
+    you can change at run time; its kinds and options are fixed.
     """
     from breakaway.export import export_c as write
     from breakaway.model.scenario import load_scenario
@@ -90,16 +90,17 @@ def export_fmu(
     scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="The file, such as rig.fmu.", metavar="FILE.fmu")],
     what: Annotated[
-        What, typer.Option(help="The controller with its reference, the plant, or both closed.")
+        What, typer.Option(help="Controller with its reference, plant, or the closed loop of both.")
     ] = What.CONTROLLER,
     fmi: Annotated[Fmi, typer.Option(help="Version of the FMI standard.")] = Fmi.THREE,
     json: Json = False,
 ) -> None:
-    """Write a unit for co-simulation (FMU): sources, and the library for this host.
+    """Write a co-simulation FMU: sources, and the library for this host.
 
     It computes the same bits as the simulation. A communication step is a whole
-    number of control periods. The library needs a C compiler here: cc, gcc or
-    clang on PATH, or what CC names; without one, the unit holds sources only.
+    number of control periods. Building the library needs a C compiler: cc, gcc
+    or clang on PATH, or the one that CC names. Without one, the FMU holds only
+    sources.
     """
     from breakaway.export import export_fmu as write
     from breakaway.model.scenario import load_scenario

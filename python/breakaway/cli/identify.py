@@ -199,9 +199,9 @@ def _refuse_unused(
 
     unused = [name for name, value in given.items() if value]
     if law is None and unused:
-        raise LogError(f"{', '.join(unused)}: need --law; without it a regression is made")
+        raise LogError(f"{', '.join(unused)}: only for --law; give --law, or leave them out")
     if law is not None and decimation is not None:
-        raise LogError("--decimation: belongs to the regression; leave it or --law out")
+        raise LogError("--decimation: only for the regression; leave out --decimation or --law")
 
 
 def _page(log: Path, out: Path | None) -> Path:
@@ -210,9 +210,9 @@ def _page(log: Path, out: Path | None) -> Path:
 
     page = Path(f"{log.stem}.html") if out is None else out.with_suffix(".html")
     if page == out:
-        raise OutputError(f"{out}: is where the report goes; give --out another suffix")
+        raise OutputError(f"{out}: the report goes there; give --out another suffix")
     if is_file(page) and not _is_report(page):
-        raise OutputError(f"{page}: is there and is no report; move it, or give another --out")
+        raise OutputError(f"{page}: exists and is not a report; move it, or give another --out")
     return page
 
 
@@ -281,4 +281,4 @@ def _check_target(log: Path, out: Path) -> None:
         try:
             JointFile.load(out)
         except ScenarioError:
-            raise OutputError(f"{out}: is there and is no joint file; give another name") from None
+            raise OutputError(f"{out}: exists and is not a joint file; give another name") from None

@@ -26,10 +26,10 @@ LIMIT_OF = {
 """Figure -> the limit of a scenario that judges it."""
 
 MEANING = {
-    "released": "the part is free, and no limit was exceeded",
+    "released": "the part is free and no limit was exceeded",
     "not_released": "time ran out before the part was free",
-    "diverged": "error or force passed its bound, or was not a number",
-    "limit_exceeded": "the part saw more than its limits allow",
+    "diverged": "error or force exceeded its bound, or was not a number",
+    "limit_exceeded": "the part exceeded a limit",
 }
 """Outcome -> what it says."""
 
@@ -38,24 +38,26 @@ def run(
     scenario: ScenarioName,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for scenario, metrics, trace and figure.", metavar="DIR"),
+        typer.Option(
+            help="Folder for the results: scenario, metrics, trace, figure.", metavar="DIR"
+        ),
     ] = None,
     joint: Annotated[
         Path | None,
         typer.Option(
-            help="Joint file of `breakaway identify`, laid over the scenario.", metavar="FILE"
+            help="Joint file from `breakaway identify`, laid over the scenario.", metavar="FILE"
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Seed of all random draws, in place of the scenario's.")
+        int | None, typer.Option(help="Seed of all random draws. Left out: the scenario's.")
     ] = None,
     json: Json = False,
 ) -> None:
-    """Simulate one extraction and show its figures.
+    """Simulate one extraction and show its metrics.
 
-    With --out, the folder receives scenario.toml (every number explicit:
-    running it gives the same bits), metrics.json, trace.parquet, trace.csv,
-    figure.png and figure.svg; none of them where the run is interrupted.
+    With --out, the folder gets scenario.toml (with every number explicit, so
+    that it reruns to the same bits), metrics.json, trace.parquet, trace.csv,
+    figure.png and figure.svg. An interrupted run writes nothing.
     """
     from breakaway.model.scenario import load_scenario
 
@@ -124,7 +126,7 @@ def _notes(finished: Run, out: Path | None) -> list[str]:
     if out is not None and not finished.trace:
         notes.append("no trace and no figure: trace.every_samples is 0")
     if out is None:
-        notes.append("--out DIR keeps trace, figure and the scenario that reruns this")
+        notes.append("--out DIR saves trace, figure and the scenario that reruns this")
     return notes
 
 
@@ -149,12 +151,12 @@ def _warnings(finished: Run) -> Iterator[str]:
     if limits.breakaway_travel_m is not None and limits.breakaway_travel_m <= presliding_m:
         yield (
             f"limits.breakaway_travel_m = {show('x_m', limits.breakaway_travel_m)} is within the "
-            f"presliding travel {show('x_m', presliding_m)}: a stuck joint counts as loose"
+            f"presliding travel {show('x_m', presliding_m)}: a stuck joint would count as loose"
         )
     for which, gains in gain_sets(scenario.controller).items():
         if isinstance(gains, Gains) and min(gains.kp_n_per_m, gains.kd_n_s_per_m) < 0.0:
             yield (
-                f"controller.{which}: one is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
+                f"controller.{which}: a gain is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
                 f"{gains.kd_n_s_per_m:.4g} N s/m; see `breakaway design`"
             )
     if scenario.joint.law == "lugre" and m.time_to_breakaway_s > 0 and m.peak_over_breakaway < 1:

@@ -28,23 +28,22 @@ OUTCOMES = ("released", "not_released", "limit_exceeded", "diverged")
 def study(
     file: Annotated[Path, typer.Argument(help="TOML file of the study.", metavar="STUDY.toml")],
     out: Annotated[
-        Path, typer.Option(help="Folder for parts, summary, tables and figures.", metavar="DIR")
+        Path, typer.Option(help="Folder for the results: summary, tables, figures.", metavar="DIR")
     ],
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a study that DIR holds.")
-    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the study in DIR.")] = False,
     threads: Threads = None,
     json: Json = False,
 ) -> None:
     """Run many simulations that answer one question.
 
-    The kind of study is a sweep, robustness, sensitivity, compare, or agreement
-    of friction laws.
+    There are five kinds: sweep, robustness, sensitivity, compare, and
+    agreement (between friction laws). `breakaway init --kind` writes a file
+    to start from.
 
-    The folder receives manifest.json first, then the runs in parts as they
-    finish (Parquet), and in the end summary.json, tables (CSV), figures, and
-    study.toml, which holds all it takes to run it again. A study that was
-    interrupted or killed goes on with --resume and computes nothing twice.
+    Runs are saved as they finish (Parquet). At the end the folder also holds
+    summary.json, tables (CSV), figures, and study.toml, which is all it takes
+    to run the study again. An interrupted or killed study continues with
+    --resume and computes nothing twice.
     """
     from breakaway.ask.studies import load_study, run_study
 

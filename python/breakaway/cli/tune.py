@@ -24,23 +24,21 @@ if TYPE_CHECKING:
 def tune(
     file: Annotated[Path, typer.Argument(help="TOML file of the tuning.", metavar="TUNING.toml")],
     out: Annotated[
-        Path, typer.Option(help="Folder for trials, methods, tables and figures.", metavar="DIR")
+        Path, typer.Option(help="Folder for the results: methods, tables, figures.", metavar="DIR")
     ],
     trials: Annotated[
-        int | None, typer.Option(min=1, help="Methods to try. Left out: as the file says.")
+        int | None, typer.Option(min=1, help="How many methods to try. Left out: as in the file.")
     ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with the tuning that DIR holds.")
-    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the tuning in DIR.")] = False,
     threads: Threads = None,
     json: Json = False,
 ) -> None:
     """Tune a method on parts of a population, and score it on parts that tuning never saw.
 
-    The folder receives manifest.json first, then each trial as it finishes, and
-    in the end summary.json, best.toml (the recommended method, complete), a file
-    for each point of the front, tables (CSV) and figures. A tuning that was
-    interrupted or killed goes on with --resume, also with more --trials.
+    Each trial is saved as it finishes. At the end the folder also holds
+    summary.json, best.toml (the recommended method, complete), a file for each
+    point of the front, tables (CSV) and figures. An interrupted or killed
+    tuning continues with --resume, also with more --trials.
     """
     from breakaway.ask.tuning import load_tuning
     from breakaway.ask.tuning import tune as run_tuning
