@@ -13,7 +13,15 @@ from tests.guides.applying import Files
 ROOT = Path(__file__).parents[2]
 TARGET = ROOT / "target"
 TREE = TARGET / "guides"
-SOURCES = ("Cargo.toml", "Cargo.lock", "rustfmt.toml", "pyproject.toml", "crates", "python", "tests")
+SOURCES = (
+    "Cargo.toml",
+    "Cargo.lock",
+    "rustfmt.toml",
+    "pyproject.toml",
+    "crates",
+    "python",
+    "tests",
+)
 BUILT = ("__pycache__", "_core.abi3.so")
 """What arises in the tree and stays there."""
 PROGRAMS = {
@@ -51,7 +59,9 @@ def lay_out(files: Files) -> None:
 
 def build() -> None:
     """Check that all of Rust compiles, tests too, and put the extension into its place."""
-    run("cargo check -q --locked --workspace --exclude breakaway-python --all-targets --features serde")
+    run(
+        "cargo check -q --locked --workspace --exclude breakaway-python --all-targets --features serde"
+    )
     run("cargo build -q --locked -p breakaway-python")
     extension = (TARGET / "debug/lib_core.so").read_bytes()
     (TREE / "python/breakaway/_core.abi3.so").write_bytes(extension)

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from breakaway.cli.options import Json, ScenarioName
 from breakaway.cli.quantity import show, show_value, split_unit
-from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, say, say_json, say_written
 
 if TYPE_CHECKING:
     from breakaway.cli.overlay import Overlay
@@ -23,36 +25,38 @@ LIMIT_OF = {
 """Figure -> the limit of a scenario that judges it."""
 
 MEANING = {
-    "released": "the part is free, and no limit was exceeded",
+    "released": "the part is free and no limit was exceeded",
     "not_released": "time ran out before the part was free",
-    "diverged": "error or force passed its bound, or was not a number",
-    "limit_exceeded": "the part saw more than its limits allow",
+    "diverged": "error or force exceeded its bound, or was not a number",
+    "limit_exceeded": "the part exceeded a limit",
 }
 """Outcome -> what it says."""
 
 
 def run(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for scenario, metrics, trace and figure.", metavar="DIR"),
+        typer.Option(
+            help="Folder for the results: scenario, metrics, trace, figure.", metavar="DIR"
+        ),
     ] = None,
     joint: Annotated[
         Path | None,
         typer.Option(
-            help="Joint file of `breakaway identify`, laid over the scenario.", metavar="FILE"
+            help="Joint file from `breakaway identify`, laid over the scenario.", metavar="FILE"
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Seed of all random draws, in place of the scenario's.")
+        int | None, typer.Option(help="Seed of all random draws. Left out: the scenario's.")
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
-    """Simulate one extraction and show its figures.
+    """Simulate one extraction and show its metrics.
 
-    With --out, the folder receives scenario.toml (every number explicit:
-    running it gives the same bits), metrics.json, trace.parquet, trace.csv,
-    figure.png and figure.svg; none of them where the run is interrupted.
+    With --out, the folder gets scenario.toml (with every number explicit, so
+    that it reruns to the same bits), metrics.json, trace.parquet, trace.csv,
+    figure.png and figure.svg. An interrupted run writes nothing.
     """
     from breakaway.model.scenario import load_scenario
 
@@ -78,8 +82,7 @@ def run(
     _show(finished)
     for note in _notes(finished, out):
         say(note)
-    for path in files:
-        say(f"wrote {path}")
+    say_written(files)
 
 
 def _simulate(scenario: Scenario, out: Path | None) -> tuple[Run, list[Path]]:
@@ -122,7 +125,7 @@ def _notes(finished: Run, out: Path | None) -> list[str]:
     if out is not None and not finished.trace:
         notes.append("no trace and no figure: trace.every_samples is 0")
     if out is None:
-        notes.append("--out DIR keeps trace, figure and the scenario that reruns this")
+        notes.append("--out DIR saves trace, figure and the scenario that reruns this")
     return notes
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import tomllib
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar
@@ -38,6 +39,27 @@ def preset_names(folder: str = "") -> list[str]:
     check_choice("folder", folder, FOLDERS, ScenarioError)
     presets = PRESETS / folder if folder else PRESETS
     return sorted(p.name.removesuffix(".toml") for p in presets.iterdir() if p.name[-5:] == ".toml")
+
+
+def preset_descriptions(folder: str = "") -> dict[str, str]:
+    """Names of the presets, each with its description, or else the first line of its file.
+
+    Parameters
+    ----------
+    folder : {"", "populations", "methods", "stacks"}, optional
+        Which presets: scenarios, where it is left out.
+
+    Examples
+    --------
+    >>> preset_descriptions("stacks")["pi_p888_91_pd200"]
+    'PI Ceramic PICMA stack P-888.91, 10 x 10 x 36 mm, on a PiezoDrive PD200 amplifier of 150 V.'
+
+    """
+    texts = {name: _preset_text(name, folder) for name in preset_names(folder)}
+    return {
+        name: tomllib.loads(text).get("description") or text.split("\n", 1)[0].lstrip("# ")
+        for name, text in texts.items()
+    }
 
 
 def load_scenario(source: str | Path) -> Scenario:
@@ -142,9 +164,12 @@ def load_stack(source: str | Path) -> Piezo:
 
 def _load(model: type[AnyModel], source: str | Path, folder: str) -> AnyModel:
     if isinstance(source, str) and source in preset_names(folder):
-        text = PRESETS.joinpath(*folder.split(), f"{source}.toml").read_text(encoding="utf-8")
-        return parse_toml(model, text, source)
+        return parse_toml(model, _preset_text(source, folder), source)
     return parse_toml(model, _read(Path(source), preset_names(folder)), str(source))
+
+
+def _preset_text(name: str, folder: str) -> str:
+    return PRESETS.joinpath(*folder.split(), f"{name}.toml").read_text(encoding="utf-8")
 
 
 def parse_scenario(text: str, source: str) -> Scenario:
