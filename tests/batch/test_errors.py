@@ -241,15 +241,11 @@ def test_numbers_of_runs(refusal, runs):
 @pytest.mark.parametrize("runs", [*NO_RUNS[:-1], *NO_RANGES])
 def test_numbers_of_parts(runs):
     population, method = bk.load_population("seized_parts"), bk.load_method("steady_feed")
-    with pytest.raises(
-        bk.StudyError, match=r"^runs: .* is not a whole number (of at least 1, nor|or) a range"
-    ):
+    with pytest.raises(bk.StudyError, match=r"^runs: .* is not a whole number .*or a range"):
         bk.run_trial(population, method, runs=runs, seed=0)
 
 
-@pytest.mark.parametrize(
-    "metrics", ["iae_m_s", 5, iter(["iae_m_s"]), ["iae_m_s", 3], ["iae_m_s", None]]
-)
+@pytest.mark.parametrize("metrics", ["iae_m_s", 5, iter(["iae_m_s"]), ["iae_m_s", 3], [None]])
 def test_metrics_that_are_no_list(refusal, metrics):
     message = refusal(metrics=metrics)
     assert message == f"metrics: {metrics!r} is not a list of names; give a list of names"
