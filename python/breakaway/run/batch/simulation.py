@@ -173,7 +173,7 @@ def _wanted(metrics: Sequence[str] | None) -> Sequence[str]:
     if metrics is None:
         return METRICS
     if not metrics:
-        raise StudyError(f"metrics: is empty; give some of {', '.join(METRICS)}")
+        raise StudyError(f"metrics: {shown(metrics)} is empty; give some of {', '.join(METRICS)}")
     for name in metrics:
         check_choice("metrics", name, METRICS, StudyError)
     return tuple(dict.fromkeys(metrics))
