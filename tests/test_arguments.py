@@ -194,7 +194,7 @@ def small_tuning(population):
         tune={"controller.speed_m_per_s": {"low": 0.01, "high": 0.03}},
         training_runs=2,
         test_runs={"first": 100, "runs": 2},
-        trials=1,
+        evaluations=1,
     )
 
 
@@ -283,6 +283,10 @@ def calls(w):
         "impose_motion": (
             bk.impose_motion,
             {"joint": imposed, "velocity_m_per_s": t_s, "period_s": 1e-3},
+        ),
+        "lay_over": (
+            bk.lay_over,
+            {"scenario": w.scenario, "joint": w.folder / "joint.toml"},
         ),
         "limit_cycles": (
             bk.design.limit_cycles,
@@ -437,9 +441,27 @@ NUMBERS = (
     *("kp", "lowpass_hz", "mass_kg", "min_rest_s", "min_slip_m", "offset_n", "origin_m"),
     *("period_s", "pole_per_s", "rest_speed_m_per_s", "rows", "run_index", "runs", "samples"),
     *("seed", "settling_time_s", "sliding_window_s", "speed_m_per_s", "start_m", "starts"),
-    *("steps_per_row", "threads", "total", "trace_every", "trials", "velocity_m_per_s"),
+    *(
+        "steps_per_row",
+        "threads",
+        "total",
+        "trace_every",
+        "evaluations",
+        "point",
+        "position_m",
+        "velocity_m_per_s",
+    ),
 )
-TEXTS = ("note", "out", "path", "sha256", "Channel.name", "Channel.from_name", "Channel.unit")
+TEXTS = (
+    "folder",
+    "note",
+    "out",
+    "path",
+    "sha256",
+    "Channel.name",
+    "Channel.from_name",
+    "Channel.unit",
+)
 LISTS = ("baselines", "columns", "free", "repeats", "spans")
 MAPPINGS = ("changes", "channels", "fixed", "guesses", "levels", "mapping", "numbers", "vary")
 

@@ -18,8 +18,10 @@ from breakaway.ask.studies.manifest import StudyManifest
 from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.run_pieces import piece_schema
 from breakaway.ask.studies.study import Study
+from breakaway.base.arguments import check_arguments
 from breakaway.base.one_line import OneLine
 from breakaway.base.reading import is_there
+from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.run.batch.batch import as_pandas
 from breakaway.run.batch.columns import at_run, with_nominal_controller
@@ -95,6 +97,12 @@ class StudyResult(OneLine, DurableFolder):
             There is no such column, or a piece is missing or not as the study wrote it.
 
         """
+        check_arguments(StudyResult.scan, locals(), StudyError)
+        if not isinstance(filter, import_module("pyarrow.compute").Expression | None):
+            raise StudyError(
+                f"filter: {shown(filter)} is not an expression of pyarrow; give one, such as "
+                "pyarrow.dataset.field('outcome') == 'diverged'"
+            )
         known = [column["name"] for column in self.manifest["columns"]]
         for name in columns or ():
             if name not in known:
@@ -133,6 +141,7 @@ class StudyResult(OneLine, DurableFolder):
         """
         from breakaway.run.simulation import simulate
 
+        check_arguments(StudyResult.replay, locals(), StudyError)
         fields = import_module("pyarrow.dataset").field
         wanted = (fields("point") == point) & (fields("run_index") == run_index)
         labels, varied = self.manifest["labels"], self.manifest["varied"]

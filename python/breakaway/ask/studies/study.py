@@ -20,6 +20,7 @@ from breakaway.ask.studies.base import (
 )
 from breakaway.ask.studies.levels import Level, grid_levels
 from breakaway.ask.studies.statistics import runs_needed
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.model.scenario.distribution import Samples
 from breakaway.model.scenario.model import Name
@@ -267,6 +268,7 @@ class ComparedController(StudyModel):
             The controller does not fit the scenario.
 
         """
+        check_arguments(ComparedController.applied_to, locals(), StudyError)
         if self.scenario is not None:
             taken = {"controller": self.scenario.controller, "actuator": self.scenario.actuator}
             try:

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from breakaway.ask.studies.base import ByPath, StudyModel
 from breakaway.ask.tuning.numbers import check_number, number_of, with_numbers
 from breakaway.ask.tuning.scores import PIEZO_METRICS, SHARES, ScoreKind, score_kind
+from breakaway.base.arguments import check_arguments
 from breakaway.base.text import LONGEST_NAME, shown
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.model.scenario.actuator import FeedAxis, Piezo
@@ -237,6 +238,7 @@ class Tuning(StudyModel):
             The numbers do not go together.
 
         """
+        check_arguments(Tuning.tuned, locals(), ScenarioError)
         return with_numbers(self.method, numbers)
 
     @model_validator(mode="after")

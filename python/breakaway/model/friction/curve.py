@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from breakaway import _core
+from breakaway.base.arguments import check_arguments
 from breakaway.base.equality import ByValue
+from breakaway.errors import ScenarioError
 from breakaway.model.friction.asked import (
     check_joint,
     check_residual,
@@ -145,6 +147,7 @@ def stribeck_slope(joint: AnyJoint, velocity_m_per_s: float, *, position_m: floa
 
     """
     check_joint(joint)
+    check_arguments(stribeck_slope, locals(), ScenarioError)
     return float(_curve(seated(joint), velocity_m_per_s, position_m)[1])
 
 

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from breakaway import _core
+from breakaway.base.arguments import check_arguments, column_of
 from breakaway.base.equality import ByValue
 from breakaway.errors import ScenarioError
-from breakaway.model.friction.asked import check_joint, check_residual
+from breakaway.model.friction.asked import check_joint, check_residual, check_velocities
 from breakaway.model.scenario.core_joint import core_joint
 from breakaway.model.scenario.joint import AnyJoint
 
@@ -73,9 +74,9 @@ def impose_motion(
 
     """
     check_joint(joint)
-    velocity = np.asarray(velocity_m_per_s, dtype=np.float64)
-    if velocity.ndim != 1 or not np.all(np.isfinite(velocity)):
-        raise ScenarioError("velocity_m_per_s: is not a one-dimensional array of finite numbers")
+    check_arguments(impose_motion, locals(), ScenarioError)
+    velocity = column_of("velocity_m_per_s", velocity_m_per_s, ScenarioError)
+    check_velocities(velocity)
     if not 0.0 < period_s < float("inf"):
         raise ScenarioError(f"period_s: {period_s!r} is not > 0 and finite; give a time in s")
     if not -float("inf") < start_m < float("inf"):
