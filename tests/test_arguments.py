@@ -410,6 +410,7 @@ def without_variadic(function):
     return [name for name, stars in parameters_of(function).items() if not stars]
 
 
+@pytest.mark.filterwarnings("ignore:invalid value encountered")  # of emcee, by so few samples
 @pytest.mark.parametrize("name", TAKERS)
 def test_a_wrong_kind_is_refused_in_one_line(name, world, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
