@@ -16,7 +16,7 @@ study = parse_study({
     "vary": {"joint.stiction_n": {"distribution": "uniform", "low": 400.0, "high": 500.0}},
 })
 with tempfile.TemporaryDirectory() as folder:
-    done = run_study(study, folder, threads=1)
+    done = run_study(study, out=folder, threads=1)
     assert done.dataset.count_rows() == study.runs
 status = open("/proc/self/status").read()  # ru_maxrss would count the parent before exec, too
 print(int(status.partition("VmHWM:")[2].split()[0]))
