@@ -28,6 +28,7 @@ ENVIRONMENT = {
     "CARGO_PROFILE_DEV_OPT_LEVEL": "0",
     "CARGO_PROFILE_DEV_DEBUG": "0",
     "CARGO_NET_OFFLINE": "true",
+    "RUST_MIN_STACK": str(64 << 20),  # what is not optimized needs more than 2 MiB
     "PYO3_PYTHON": sys.executable,
     "PYTHONPATH": str(TREE / "python"),
 }
