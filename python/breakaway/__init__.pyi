@@ -63,6 +63,8 @@ from breakaway.measure.logs import Log as Log
 from breakaway.measure.logs import derive_motion as derive_motion
 from breakaway.measure.logs import noise_floor as noise_floor
 from breakaway.measure.logs import read_log as read_log
+from breakaway.model.friction.imposed import ImposedMotion as ImposedMotion
+from breakaway.model.friction.imposed import impose_motion as impose_motion
 from breakaway.model.scenario import BandLimitedDisturbance as BandLimitedDisturbance
 from breakaway.model.scenario import Contact as Contact
 from breakaway.model.scenario import CoulombStiction as CoulombStiction
@@ -128,8 +130,7 @@ from breakaway.run.batch import simulate_many as simulate_many
 from breakaway.run.finished import Outcome as Outcome
 from breakaway.run.finished import Run as Run
 from breakaway.run.finished import RunMetrics as RunMetrics
-from breakaway.model.friction.imposed import ImposedMotion as ImposedMotion
-from breakaway.model.friction.imposed import impose_motion as impose_motion
+from breakaway.run.overlay import lay_over as lay_over
 from breakaway.run.resolution import resolve as resolve
 from breakaway.run.simulation import simulate as simulate
 from breakaway.run.trials import Trial as Trial

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import breakaway as bk
-from breakaway.model.scenario.population import LAWS
+from breakaway.model.scenario.laws import LAWS
 from breakaway.show.plots.run import BINS, plot_run
 from breakaway.show.plots.style import house_style, save_figure, scaled
 

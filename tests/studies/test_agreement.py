@@ -8,13 +8,13 @@ import pytest
 import breakaway as bk
 from breakaway.ask.studies import load_study, open_study, run_study
 from breakaway.ask.studies.agreement import bisected, narrowed
-from breakaway.ask.studies.agreement_study import joint_under
 from breakaway.ask.studies.files import parse_study
 from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.statistics import mcnemar
 from breakaway.ask.studies.verdicts import compared, compared_shares, direction_of, verdict_of
 from breakaway.cli.app import app
 from breakaway.errors import StudyError
+from breakaway.model.scenario.laws import joint_under
 from breakaway.show.plots.study import plot_agreement
 from breakaway.show.plots.style import COLORS
 

@@ -8,11 +8,11 @@ import numpy as np
 import pyarrow as arrow
 import pyarrow.parquet as parquet
 import pytest
+from breakaway.ask.studies.pieces import DIGESTS, Pieces, digest_of
 
 from breakaway.ask.studies import open_study, run_study
 from breakaway.ask.studies.files import parse_study
 from breakaway.ask.studies.manifest import FORMAT, identity_of
-from breakaway.ask.studies.pieces import DIGESTS, Pieces, digest_of
 from breakaway.errors import StudyError
 
 PART = "parts/part-000001.parquet"

@@ -11,11 +11,11 @@ import time
 from pathlib import Path
 
 import pytest
+from breakaway.ask.studies.pieces import DIGESTS, Pieces
 
 from breakaway.ask.studies import load_study, open_study, run_study
 from breakaway.ask.studies.files import parse_study
 from breakaway.ask.studies.manifest import identity_of
-from breakaway.ask.studies.pieces import DIGESTS, Pieces
 from breakaway.ask.studies.plans import plan_of
 from breakaway.errors import BreakawayError, OutputError, StudyError
 

@@ -10,7 +10,7 @@ import pytest
 import breakaway as bk
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.model.scenario.files import preset_names
-from breakaway.model.scenario.population import LAWS
+from breakaway.model.scenario.laws import LAWS
 from breakaway.run.trials import TRIAL_METRICS, part_columns, scenario_of
 from breakaway.run.trials.parts import steps_per_period
 

@@ -12,6 +12,7 @@ from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
 from breakaway.measure.identification.joint_file import JointFile
 from breakaway.model.scenario import PolePlacement, Scenario, gain_sets
+from breakaway.run.overlay import lay_file_over
 from breakaway.run.resolution import resolve
 
 WEIGHT = "left out, so the weight of the identified mass"
@@ -128,35 +129,22 @@ class Overlay:
         }
 
 
-def lay_over(path: Path, scenario: Scenario) -> Overlay:
-    """Lay a joint file over a scenario.
+def overlay_of(path: Path, scenario: Scenario) -> Overlay:
+    """Lay a joint file over a scenario, and keep what is told of it.
 
     Raises
     ------
     ScenarioError
-        The file is not valid, or the scenario's friction law has no place for a figure of it.
+        As `breakaway.lay_over`, or the controller can not be designed for the joint.
 
     """
     joint_file = JointFile.load(path)
-    changes = joint_file.scenario_changes()
-    for field in changes:
-        if _table_lacks(scenario, field):
-            law = scenario.joint.law
-            raise ScenarioError(
-                f"{path}: sets {field}, which the scenario's law = {law!r} does not have; give "
-                "the scenario a joint with law = 'lugre'"
-            )
+    changed = lay_file_over(scenario, joint_file, str(path))
     try:
-        changed = scenario.with_(changes)
         resolve(changed)  # finds what can not be designed while the joint file can be named
     except ScenarioError as error:
         raise ScenarioError(f"{path} laid over {scenario.name}: {error}") from None
     return Overlay(path, joint_file, changed)
-
-
-def _table_lacks(scenario: Scenario, field: str) -> bool:
-    name, key = field.split(".")
-    return key not in type(getattr(scenario, name)).model_fields
 
 
 def _value(scenario: Scenario, field: str) -> float | None:

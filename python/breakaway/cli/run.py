@@ -66,9 +66,9 @@ def run(
         asked = asked.with_(seed=seed)
     overlay = None
     if joint is not None:
-        from breakaway.cli.overlay import lay_over
+        from breakaway.cli.overlay import overlay_of
 
-        overlay = lay_over(joint, asked)
+        overlay = overlay_of(joint, asked)
         asked = overlay.scenario
     finished, files = _simulate(asked, out)
     if json:

@@ -15,9 +15,10 @@ from breakaway.base.reading import read_toml
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.files import load_method, load_population, preset_names
+from breakaway.model.scenario.laws import LAWS, Law
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.model import Name
-from breakaway.model.scenario.population import LAWS, Law, PartPopulation
+from breakaway.model.scenario.population import PartPopulation
 from breakaway.run.batch.simulation import RUNS_MAX
 
 AnyName = TypeVar("AnyName", bound=str | Path | Method)

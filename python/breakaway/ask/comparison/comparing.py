@@ -28,8 +28,9 @@ from breakaway.ask.durable.runner import Runner
 from breakaway.ask.studies.plan import Row
 from breakaway.base.equality import ByValue
 from breakaway.errors import StudyError
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import Law, PartPopulation
+from breakaway.model.scenario.population import PartPopulation
 from breakaway.run.trials import Trial, run_trial
 
 DRAWING = "figures and page"

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from breakaway.ask.comparison.asked import Asked
 from breakaway.ask.durable.pieces import as_bytes
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import QUANTITIES, Law
+from breakaway.model.scenario.population import QUANTITIES
 from breakaway.model.units import unit_of
 from breakaway.run.trials import TRIAL_METRICS, Trial
 

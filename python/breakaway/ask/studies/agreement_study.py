@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from math import ceil, log2
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -20,9 +20,8 @@ from breakaway.ask.studies.base import (
     percent,
 )
 from breakaway.errors import ScenarioError, StudyError
-from breakaway.model.scenario.joint import AnyJoint
+from breakaway.model.scenario.laws import Law, joint_under
 from breakaway.model.scenario.model import Name, NotNegative
-from breakaway.model.scenario.population import Law, LawNumbers
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch.columns import check_paths, with_nominal_controller
 
@@ -33,8 +32,6 @@ RELEASED, SMALLEST = "released", "smallest"
 """What is compared beside metrics: how many are released, and the smallest sufficient level."""
 OWN = "variant's own"
 """What the disturbance multiplies where variants differ in it."""
-
-_JOINTS = {model.model_fields["law"].default: model for model in get_args(AnyJoint)}
 
 
 class AgreementVariant(StudyModel):
@@ -218,7 +215,12 @@ class AgreementStudy(StudyBase):
     def _under_every_law(self, nominal: Scenario) -> Iterator[tuple[Law, Scenario]]:
         for law in self.agreement.laws:
             numbers = self.agreement.numbers.get(law, {})
-            yield law, nominal.with_(joint=joint_under(law, nominal.joint, numbers))
+            try:
+                joint = joint_under(law, nominal.joint, numbers)
+            except ScenarioError as error:
+                where = f"agreement.numbers.{law}."
+                raise StudyError(where + str(error).replace("\n", f"\n{where}")) from None
+            yield law, nominal.with_(joint=joint)
 
     @model_validator(mode="after")
     def _does_not_contradict_itself(self) -> Self:
@@ -290,50 +292,6 @@ class AgreementStudy(StudyBase):
             for end in ("low", "high"):
                 level = {asked.over: getattr(asked, end)}
                 changed(scenario, level, f"agreement.smallest.{end}: {where}")
-
-
-def joint_under(law: Law, joint: AnyJoint, numbers: Mapping[str, Any]) -> AnyJoint:
-    """Give a joint with another friction law and the same levels, stiffness, damping and so on.
-
-    Parameters
-    ----------
-    law : str
-        The law.
-    joint : Lugre, ElastoPlastic, Gms, TwoRegion or CoulombStiction
-        The joint whose numbers it takes, as far as the law has a place for them.
-    numbers : mapping
-        Numbers of the law that count instead.
-
-    Raises
-    ------
-    StudyError
-        The law needs a number that neither has, or a number is not valid.
-
-    Examples
-    --------
-    >>> import breakaway as bk
-    >>> joint = bk.load_scenario("paper_as_computed").joint
-    >>> joint_under("elasto_plastic", joint, {"elastic_share": 0.9}).stiffness_n_per_m
-    36000000.0
-    >>> joint_under("gms", joint, {"elements": 2})
-    Traceback (most recent call last):
-        ...
-    breakaway.errors.StudyError: agreement.numbers.gms.elements: 2 is not >= 4; give ...
-
-    """
-    model, usual = _JOINTS[law], LawNumbers()
-    own = {
-        "elasto_plastic": {"elastic_share": usual.elastic_share},
-        "gms": {"attraction_n_per_s": joint.stiction_n / usual.gms_lag_s},
-    }.get(law, {})
-    known = joint.model_dump(exclude_none=True)
-    kept = {name: known[name] for name in model.model_fields if name in known and name != "law"}
-    try:
-        under: AnyJoint = model(**{**own, **kept, **numbers})
-    except ScenarioError as error:
-        where = f"agreement.numbers.{law}."
-        raise StudyError(where + str(error).replace("\n", f"\n{where}")) from None
-    return under
 
 
 def _with_disturbance(scenario: Scenario, acts_on: str) -> Scenario:

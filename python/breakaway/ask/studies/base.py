@@ -20,6 +20,7 @@ from breakaway.model.scenario.model import Model, Name, Text
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch.columns import check_paths, with_nominal_controller
 from breakaway.run.finished import RunMetrics
+from breakaway.run.overlay import lay_file_over
 
 METRICS = tuple(field.name for field in fields(RunMetrics))
 """What can be recorded of each run, beside its outcome."""
@@ -128,7 +129,10 @@ class StudyBase(StudyModel):
         """The scenario with the study's changes and seed."""
         scenario = self.scenario
         if self.joint is not None:
-            scenario = changed(scenario, self.joint.scenario_changes(), "joint")
+            try:
+                scenario = lay_file_over(scenario, self.joint, "joint")
+            except ScenarioError as error:
+                raise StudyError(str(error)) from None
         if self.changes:
             scenario = changed(scenario, self.changes, "changes")
         return scenario if self.seed is None else scenario.with_(seed=self.seed)

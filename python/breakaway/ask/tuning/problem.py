@@ -15,9 +15,10 @@ from breakaway.base.text import LONGEST_NAME, shown
 from breakaway.errors import ScenarioError, StudyError
 from breakaway.model.scenario.actuator import FeedAxis, Piezo
 from breakaway.model.scenario.files import load_method, load_population
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.model import Name, Text
-from breakaway.model.scenario.population import Law, PartPopulation
+from breakaway.model.scenario.population import PartPopulation
 from breakaway.run.trials import scenario_of
 
 EVALUATIONS_MAX = 10_000

@@ -11,6 +11,7 @@ import numpy as np
 from breakaway._core import RIG_NUMBERS
 from breakaway.errors import LogError
 from breakaway.measure.logs.log import Array
+from breakaway.model.scenario.laws import LAW_WORDS
 
 LawName = Literal["coulomb", "stribeck", "lugre", "elasto_plastic"]
 LAWS: tuple[LawName, ...] = ("coulomb", "stribeck", "lugre", "elasto_plastic")
@@ -19,8 +20,8 @@ LAWS: tuple[LawName, ...] = ("coulomb", "stribeck", "lugre", "elasto_plastic")
 LABELS: Mapping[LawName, str] = {
     "coulomb": "Coulomb",
     "stribeck": "Stribeck",
-    "lugre": "LuGre",
-    "elasto_plastic": "elasto-plastic",
+    "lugre": LAW_WORDS["lugre"],
+    "elasto_plastic": LAW_WORDS["elasto_plastic"],
 }
 
 SHARED = RIG_NUMBERS[:-1]

@@ -61,15 +61,9 @@ from breakaway.model.scenario.joint import (
     StribeckJoint,
     TwoRegion,
 )
+from breakaway.model.scenario.laws import LAWS, Law, LawNumbers
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import (
-    LAWS,
-    Gentleness,
-    Law,
-    LawNumbers,
-    PartDistributions,
-    PartPopulation,
-)
+from breakaway.model.scenario.population import Gentleness, PartDistributions, PartPopulation
 from breakaway.model.scenario.reference import (
     MinimumJerk,
     RampReference,

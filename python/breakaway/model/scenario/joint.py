@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -27,6 +27,8 @@ class _Levels(Model):
 class _Bristle(Model):
     """What a stuck joint yields by."""
 
+    one_bristle: ClassVar[bool] = True
+    """Whether the joint yields by one bristle, which is all that Runge-Kutta steps."""
     stiffness_n_per_m: Positive
     """k_e, stiffness of the bristles, in N/m."""
     damping_n_s_per_m: NotNegative
@@ -123,6 +125,7 @@ class Gms(StribeckJoint):
 
     """
 
+    one_bristle: ClassVar[bool] = False
     law: Literal["gms"] = "gms"
     """The friction law."""
     elements: Annotated[int, Field(ge=4, le=ELEMENTS_MAX)] = 6
@@ -201,6 +204,7 @@ class CoulombStiction(_Guide, _Levels):
 
     """
 
+    one_bristle: ClassVar[bool] = False
     law: Literal["coulomb_stiction"] = "coulomb_stiction"
     """The friction law."""
     viscous_n_s_per_m: NotNegative = 0.0
@@ -235,7 +239,6 @@ def _check_breaks_loose(joint: TwoRegion | CoulombStiction) -> None:
 
 AnyJoint = Lugre | ElastoPlastic | Gms | TwoRegion | CoulombStiction
 """A joint of any law."""
-Joint = Annotated[AnyJoint, Field(discriminator="law")]
 
 
 class Part(Model):

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from breakaway.model.scenario.distribution import Distribution
+from breakaway.model.scenario.laws import LawNumbers
 from breakaway.model.scenario.model import Model, Name, Positive, Text
 from breakaway.model.scenario.sensor import Sensors, Watch
 
-Law = Literal["lugre", "elasto_plastic", "gms", "coulomb_stiction", "two_region"]
-LAWS: tuple[Law, ...] = ("lugre", "elasto_plastic", "gms", "coulomb_stiction", "two_region")
-"""Friction laws that a population can have."""
 QUANTITIES = (
     "stiction_n",
     "stiction_ratio",
@@ -61,17 +58,6 @@ class Gentleness(Model):
     """Largest uncontrolled travel in one slip, in m."""
     release_velocity_max_m_per_s: Positive
     """Largest velocity at release, in m/s."""
-
-
-class LawNumbers(Model):
-    """What some friction laws need beside the quantities of a part."""
-
-    elastic_share: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.7
-    """Elasto-plastic: share of the steady deflection that is elastic."""
-    gms_elements: Annotated[int, Field(ge=4, le=10)] = 4
-    """Generalized Maxwell-slip: number of elements."""
-    gms_lag_s: Positive = 1e-3
-    """Generalized Maxwell-slip: F_s0 over the attraction: how friction lags while sliding, in s."""
 
 
 class PartPopulation(Model):

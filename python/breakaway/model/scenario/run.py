@@ -2,11 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from breakaway.model.scenario.model import Model, NotNegative, Positive
+
+Numbers = TypeVar("Numbers", float, NDArray[np.float64])
+"""The number of one part, or those of many."""
+
+
+LONGEST_STEP = 0.3
+"""Longest integration step over sqrt(mass / stiffness)."""
+
+
+def longest_step_s(mass_kg: Numbers, stiffness_n_per_m: Numbers) -> Numbers:
+    """Return the longest step that still resolves a bristle, in s; of one part, or of many.
+
+    Examples
+    --------
+    >>> f"{longest_step_s(1.0, 3.6e7):.3g}"
+    '5e-05'
+
+    """
+    longest_s: Numbers = LONGEST_STEP * np.sqrt(mass_kg / stiffness_n_per_m)
+    return longest_s
 
 
 class Timing(Model):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import ceil, isfinite, sqrt
+from math import ceil, isfinite
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Field, model_validator
@@ -25,10 +25,10 @@ from breakaway.model.scenario.controller import (
     pids,
 )
 from breakaway.model.scenario.disturbance import Disturbance, UniformDisturbance
-from breakaway.model.scenario.joint import CoulombStiction, Gms, Joint, Part
+from breakaway.model.scenario.joint import AnyJoint, Part
 from breakaway.model.scenario.model import Model, Name, Text
 from breakaway.model.scenario.reference import Reference, StepReference
-from breakaway.model.scenario.run import Limits, Timing, Trace
+from breakaway.model.scenario.run import LONGEST_STEP, Limits, Timing, Trace, longest_step_s
 from breakaway.model.scenario.sensor import Sensors, Watch
 
 SAMPLES_MAX = 4_000_000_000
@@ -65,7 +65,7 @@ class Scenario(Model):
     """The version that wrote the file; told, not checked."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Seed of all random draws."""
-    joint: Joint
+    joint: Annotated[AnyJoint, Field(discriminator="law")]
     """The seized joint."""
     part: Part
     """The part in it."""
@@ -124,7 +124,8 @@ class Scenario(Model):
         if not isfinite(k_e):
             return self
         step_s = timing.control_period_s / timing.steps_per_period
-        longest_s, rule = 0.3 * sqrt(m / k_e), "0.3 sqrt(part.mass_kg / joint.stiffness_n_per_m)"
+        longest_s = float(longest_step_s(m, k_e))
+        rule = f"{LONGEST_STEP:g} sqrt(part.mass_kg / joint.stiffness_n_per_m)"
         if timing.integrator == "rk4":
             longest_s, rule = longest_s / 15, f"{rule} / 15, for rk4 is explicit,"
             damping = self.joint.damping_n_s_per_m
@@ -142,7 +143,7 @@ class Scenario(Model):
         return self
 
     def _check_rk4_has_one_bristle(self) -> None:
-        if self.timing.integrator == "rk4" and isinstance(self.joint, CoulombStiction | Gms):
+        if self.timing.integrator == "rk4" and not self.joint.one_bristle:
             raise ValueError(
                 f"timing.integrator: 'rk4' does not step joint.law = {self.joint.law!r}; give "
                 "'linearly_implicit_midpoint'"

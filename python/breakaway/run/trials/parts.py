@@ -9,16 +9,15 @@ from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
 from breakaway.model.scenario.given import check_population
+from breakaway.model.scenario.laws import LAWS, Law, numbers_of_parts, shared_numbers, stiffness_of
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import LAWS, QUANTITIES, Law, PartPopulation
+from breakaway.model.scenario.population import QUANTITIES, PartPopulation
+from breakaway.model.scenario.run import longest_step_s
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch import draw_columns
 from breakaway.run.resolution import with_gains
 
 Array = NDArray[np.float64]
-
-STEP_RULE = 0.3
-"""Longest step over sqrt(mass / stiffness): that of a scenario."""
 
 
 def draw_parts(population: PartPopulation, runs: int | range, *, seed: int) -> dict[str, Array]:
@@ -57,28 +56,16 @@ def part_columns(
     population: PartPopulation, method: Method, law: Law, parts: dict[str, Array]
 ) -> dict[str, Array]:
     """Give the numbers of a scenario that parts set, by dotted path."""
-    stiction = parts["stiction_n"]
+    joint = numbers_of_parts(law, population.laws, parts)
     columns = {
-        "joint.stiction_n": stiction,
-        "joint.coulomb_n": stiction / parts["stiction_ratio"],
-        "joint.engagement_length_m": parts["engagement_length_m"],
+        **{f"joint.{name}": values for name, values in joint.items()},
         "part.mass_kg": parts["mass_kg"],
         "disturbance.var": parts["var"],
         "disturbance.hold_s": parts["hold_s"],
         "limits.diverged_error_m": 10.0 * parts["engagement_length_m"],
-        "limits.diverged_force_n": 1e3 * stiction,
+        "limits.diverged_force_n": 1e3 * parts["stiction_n"],
         "limits.breakaway_travel_m": 2.0 * parts["presliding_m"],
     }
-    if law != "two_region":
-        columns["joint.stribeck_velocity_m_per_s"] = parts["stribeck_velocity_m_per_s"]
-    if law != "coulomb_stiction":
-        stiffness = stiction / parts["presliding_m"]
-        columns["joint.stiffness_n_per_m"] = stiffness
-        columns["joint.damping_n_s_per_m"] = (
-            2.0 * parts["bristle_damping_ratio"] * np.sqrt(stiffness * parts["mass_kg"])
-        )
-    if law == "gms":
-        columns["joint.attraction_n_per_s"] = stiction / population.laws.gms_lag_s
     return columns | method.told(parts["engagement_length_m"])
 
 
@@ -88,8 +75,7 @@ def steps_per_period(population: PartPopulation, parts: dict[str, Array]) -> NDA
     As many as a scenario asks for, rounded up to 1, 2, 3, 4, 6, 8, 12, ..., so that there are few
     groups of equal steps.
     """
-    stiffness = parts["stiction_n"] / parts["presliding_m"]
-    longest_s = STEP_RULE * np.sqrt(parts["mass_kg"] / stiffness)
+    longest_s = longest_step_s(parts["mass_kg"], stiffness_of(parts))
     needed = np.ceil(population.control_period_s / longest_s * (1.0 - 1e-9))
     grades = np.unique([grade * 2**n for n in range(17) for grade in (1, 3)])
     return grades[np.searchsorted(grades, needed)]
@@ -114,7 +100,7 @@ def scenario_of(
         "name": method.name,
         "description": f"On {population.name}, {law}",
         "seed": seed,
-        "joint": {"law": law, **_law_numbers(population, law)},
+        "joint": {"law": law, **shared_numbers(law, population.laws)},
         "part": {},
         "reference": reference if isinstance(reference, dict) else reference.model_dump(),
         "disturbance": {"law": "uniform", "acts_on": population.disturbance_acts_on},
@@ -136,14 +122,6 @@ def scenario_of(
     scenario = Scenario.parse(values)
     timing = scenario.timing.model_copy(update={"steps_per_period": steps})
     return scenario.model_copy(update={"controller": with_gains(scenario), "timing": timing})
-
-
-def _law_numbers(population: PartPopulation, law: Law) -> dict[str, object]:
-    if law == "elasto_plastic":
-        return {"elastic_share": population.laws.elastic_share}
-    if law == "gms":
-        return {"elements": population.laws.gms_elements}
-    return {}
 
 
 def _put(values: dict[str, object], path: str, value: float) -> None:

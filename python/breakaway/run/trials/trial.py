@@ -13,14 +13,9 @@ from breakaway.base.equality import ByValue
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.given import check_method, check_population
+from breakaway.model.scenario.laws import LAWS, Law
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import (
-    LAWS,
-    QUANTITIES,
-    Gentleness,
-    Law,
-    PartPopulation,
-)
+from breakaway.model.scenario.population import QUANTITIES, Gentleness, PartPopulation
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch import check_batch_fits, run_columns
 from breakaway.run.finished import Run

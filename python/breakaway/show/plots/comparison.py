@@ -15,6 +15,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from breakaway.base import text
+from breakaway.model.scenario.laws import LAW_WORDS
 from breakaway.model.scenario.population import Gentleness
 from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
@@ -24,14 +25,6 @@ Mask = NDArray[np.bool_]
 
 JUMP_FLOOR_M = 1e-7
 """Jumps below it are drawn on it: a logarithm has no zero."""
-LAW_WORDS = {
-    "lugre": "LuGre",
-    "elasto_plastic": "elasto-plastic",
-    "gms": "generalized Maxwell-slip",
-    "coulomb_stiction": "Coulomb with stiction",
-    "two_region": "two-region",
-}
-"""Friction law -> its name in words."""
 _SHARES = (
     ("released", COLORS["reference"], "o", 7.0, "released"),
     ("gentle", COLORS["ours"], "o", 5.0, "gentle"),

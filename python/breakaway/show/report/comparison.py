@@ -12,10 +12,11 @@ from typing import Any
 from markupsafe import Markup
 
 from breakaway._core import __version__
+from breakaway.model.scenario.laws import LAW_WORDS
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import PartPopulation
 from breakaway.model.units import unit_of
-from breakaway.show.plots.comparison import LAW_WORDS, Course
+from breakaway.show.plots.comparison import Course
 from breakaway.show.report.page import inline_svg, render
 
 Row = Mapping[str, Any]
