@@ -97,7 +97,7 @@ class StudyFolder:
 
     def _run(self, folder: Path, resume: bool = False) -> bk.StudyResult:
         with patch.object(SweepPlan, "draw_figures", lambda *_: {}):
-            return bk.run_study(self._study, folder, threads=1, resume=resume)
+            return bk.run_study(self._study, out=folder, threads=1, resume=resume)
 
     @staticmethod
     def _peaks(result: bk.StudyResult) -> list[float]:
@@ -125,7 +125,7 @@ TARGETS: dict[str, Target] = {
     **{f"toml_{name}": load_with(load) for name, load in TOML.items()},
     "study_manifest": StudyFolder("manifest.json"),
     "study_summary": StudyFolder("summary.json"),
-    "study_part": StudyFolder("parts/part-000000.parquet"),
+    "study_part": StudyFolder("pieces/piece-000000.parquet"),
 }
 """Names of targets -> what is done with the bytes."""
 

@@ -50,7 +50,7 @@ def test_a_place_that_can_not_be_is_an_output_error(tmp_path: Path, name: str) -
     study = bk.SweepStudy(scenario="paper_as_computed", changes={"disturbance.var": 0.1}, runs=2)
     for write in (
         lambda place: write_atomically(place, b""),
-        lambda place: bk.run_study(study, place),
+        lambda place: bk.run_study(study, out=place),
         lambda place: bk.compare_methods(parts, ["paper_pid"], runs=2, out=place),
         lambda place: write_run(bk.simulate(study.base), place),
     ):

@@ -10,7 +10,7 @@ HERE = Path(__file__).parent
 def main() -> None:
     """Run both studies into out/, or go on with them, and print what they found."""
     for name in ("spread", "dampings"):
-        done = run_study(load_study(HERE / f"{name}.toml"), Path("out") / name, resume=True)
+        done = run_study(load_study(HERE / f"{name}.toml"), out=Path("out") / name, resume=True)
         print("\n".join(done.summary["result"]))
     for row in done.summary["tables"]["differences"]:
         if row["metric"] == "largest_jump_m":

@@ -75,7 +75,7 @@ def main() -> None:
             print(f"{one.name:28} {getattr(TRUTH, one.name):12.5g} {one.value:12.5g}  {ends}")
         bk.JointFile.from_identification(found).save(folder / "joint.toml")
         (folder / "study.toml").write_text(STUDY)
-        done = bk.run_study(bk.load_study(folder / "study.toml"), folder / "study")
+        done = bk.run_study(bk.load_study(folder / "study.toml"), out=folder / "study")
         print("\n".join(done.summary["result"]))
 
 

@@ -13,13 +13,13 @@ TASTE = {
     "population": bk.load_population(HERE / "quick_parts.toml"),
     "training_runs": 32,
     "test_runs": {"first": 1000, "runs": 96},
-    "trials": 12,
+    "evaluations": 12,
 }
 TARGET = {"controller.target_s": {"low": 0.15, "high": 0.5}}
 
 
 def asked(full: bool) -> bk.Tuning:
-    """Give the tuning of the file, or one like it of short parts and few trials."""
+    """Give the tuning of the file, or one like it of short parts and few evaluations."""
     tuning = bk.load_tuning(HERE / "timed_impacts.toml")
     if full:
         return tuning
@@ -33,7 +33,7 @@ def main() -> None:
     parser.add_argument("--full", action="store_true", help="the whole tuning, which takes hours")
     full = parser.parse_args().full
     tuning = asked(full)
-    done = bk.tune(tuning, Path("out") / tuning.name, resume=True)
+    done = bk.tune(tuning, out=Path("out") / tuning.name, resume=True)
     print("\n".join(done.summary["result"]))
     for row in done.summary["front"]:
         print(

@@ -31,7 +31,7 @@ def main() -> None:
     for name in [given.only] if given.only else EFFECTS:
         study = asked(name, given.duration_s, given.until, given.elastic_share)
         told = f"{given.duration_s:g}s_{given.until}_{given.elastic_share:g}"
-        done = run_study(study, Path("out") / f"{name}_{told}", resume=True)
+        done = run_study(study, out=Path("out") / f"{name}_{told}", resume=True)
         print(f"smallest force, N ({name}, {given.duration_s:g} s)")
         for row in done.summary["tables"]["smallest"]:
             spread = f" ({row['p05']:g} to {row['p95']:g})" if row["runs"] > 1 else ""

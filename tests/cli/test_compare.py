@@ -134,7 +134,7 @@ def test_an_unknown_population_exits_with_2(call: Call, tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(given: list[str], tmp_path: Path) -> None:
     out, file = tmp_path / "my out", tmp_path / "comparison.toml"
-    asked = ask(given[1], [given[3], given[5]]).model_copy(update={"runs_per_part": 50})
+    asked = ask(given[1], [given[3], given[5]]).model_copy(update={"runs_per_piece": 50})
     file.write_text(asked.toml())
     words = ["compare", str(file), "--out", str(out), "--runs", "100000"]
     process = subprocess.Popen(
@@ -144,14 +144,14 @@ def test_ctrl_c_says_how_to_go_on(given: list[str], tmp_path: Path) -> None:
         text=True,
         env=os.environ | {"COLUMNS": "100"},
     )
-    while len(list(out.glob("parts/part-*"))) < 1:
+    while len(list(out.glob("pieces/piece-*"))) < 1:
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     stdout, stderr = process.communicate(timeout=60)
     assert (process.returncode, stdout) == (130, "")
     first, last = stderr.splitlines()
-    assert first.startswith("finished parts are kept; go on with: breakaway compare ")
+    assert first.startswith("what is finished is kept; go on with: breakaway compare ")
     assert first.endswith(f"--out '{out}' --runs 100000 --resume")
     assert last == "interrupted"
-    assert not list(out.glob("parts/.part-*"))
+    assert not list(out.glob("pieces/.piece-*"))

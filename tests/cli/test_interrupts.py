@@ -9,14 +9,14 @@ LOST = """
 import signal
 from breakaway.cli.interrupts import note_interrupts, raise_if_interrupted
 from breakaway.cli.progress import counted, shown_progress
-from breakaway.ask.studies import StudyProgress
+from breakaway.ask.durable.progress import Progress
 note_interrupts()
 raise_if_interrupted()
 try:
     signal.raise_signal(signal.{name})
 except KeyboardInterrupt:
     print("lost")
-at = StudyProgress(runs_done=1, runs_found=0, runs_max=9, doing="grid")
+at = Progress(runs_done=1, runs_found=0, runs_max=9, doing="grid")
 for shown, told in ((shown_progress, (at,)), (counted, (1, 9))):
     try:
         with shown({words}) as report:

@@ -26,7 +26,7 @@ population = "seized_parts"
 method = "steady_feed"
 objectives = ["strict_share"]
 training_runs = 2
-trials = 2
+evaluations = 2
 test_runs = { first = 100, runs = 2 }
 [tune]
 "controller.speed_m_per_s" = { low = 0.01, high = 0.03 }
@@ -62,7 +62,7 @@ MARKED = {
     "a run": ("metrics.json", '{"outcome": 1, "metrics": 1, "breakaway_version": 1}'),
     "a study, tuning or comparison": (
         "manifest.json",
-        '{"format": 2, "identity": "", "study": {"kind": "sweep"}}',
+        '{"format": 3, "identity": "", "breakaway_version": "", "asked": {"kind": "sweep"}}',
     ),
     "a design": ("design.json", '{"scenario": 1, "controller": 1, "gain_sets": 1}'),
     "exported C": ("interface.json", '{"breakaway_version": 1, "what": 1}'),
@@ -159,7 +159,7 @@ LINKS = [
     ("study", ".lock"),
     ("study", "digests.txt"),
     ("study", "summary.json"),
-    ("study", "parts"),
+    ("study", "pieces"),
     ("study", ".writing.abcd_123"),
     ("tune", "best.toml"),
     ("compare", "index.html"),
@@ -177,7 +177,7 @@ def test_nothing_is_written_through_a_link(
         target.write_text("mine")
     if leads == "folder":
         target.mkdir()
-        (target / "part-000000.parquet").write_text("mine")
+        (target / "piece-000000.parquet").write_text("mine")
     (out / name).symlink_to(target)
     before = listed(tmp_path)
     what = line(command, inputs, out)
@@ -193,7 +193,7 @@ def test_nothing_is_written_through_a_link(
 
 
 def linked_part(out: Path, target: Path) -> Path:
-    part = out / "parts" / "part-000000.parquet"
+    part = out / "pieces" / "piece-000000.parquet"
     shutil.move(part, target)
     part.symlink_to(target)
     return part
@@ -208,7 +208,7 @@ def linked_summary(out: Path, target: Path) -> Path:
 def linked_leftover(out: Path, target: Path) -> Path:
     target.mkdir()
     (target / "mine.txt").write_text("mine")
-    leftover = out / "parts" / ".part-000000.parquet.0123456789abcdef"
+    leftover = out / "pieces" / ".piece-000000.parquet.0123456789abcdef"
     leftover.symlink_to(target)
     return leftover
 

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import breakaway as bk
-from breakaway.ask.studies import StudyProgress
+from breakaway.ask.durable.progress import Progress
 from breakaway.cli.progress import progress_in_words
 
 Call = Callable[..., Any]
@@ -63,7 +63,7 @@ def test_every_kind_says_its_result_and_lists_its_files(
     for sentence in summary["result"]:
         assert sentence in shown.stdout
     names = ALWAYS | TABLES[kind]
-    assert {path.name for path in out.iterdir()} == names | {"parts", ".lock"}
+    assert {path.name for path in out.iterdir()} == names | {"pieces", ".lock"}
     assert all(f"wrote {out / name}" in shown.stdout for name in names)
     again = call("study", out / "study.toml", "--out", tmp_path / "again", "--json")
     content = json.loads(again.stdout)
@@ -136,7 +136,7 @@ def test_a_study_goes_on_by_its_own_file(call: Call, tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     path, out = write(tmp_path, "sweep"), tmp_path / "out"
-    path.write_text(path.read_text().replace("runs = 30", "runs = 100000\nruns_per_part = 100"))
+    path.write_text(path.read_text().replace("runs = 30", "runs = 100000\nruns_per_piece = 100"))
     process = subprocess.Popen(
         [*COMMAND, "study", str(path), "--out", str(out)],
         stdout=subprocess.PIPE,
@@ -144,17 +144,17 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
         text=True,
         env=os.environ | {"COLUMNS": "100"},
     )
-    while len(list(out.glob("parts/part-*"))) < 3:
+    while len(list(out.glob("pieces/piece-*"))) < 3:
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     stdout, stderr = process.communicate(timeout=60)
     assert (process.returncode, stdout) == (130, "")
     assert stderr == (
-        f"finished parts are kept; go on with: breakaway study {path} --out {out} --resume\n"
+        f"what is finished is kept; go on with: breakaway study {path} --out {out} --resume\n"
         "interrupted\n"
     )
-    assert not list(out.glob("parts/.part-*"))
+    assert not list(out.glob("pieces/.piece-*"))
 
 
 @pytest.mark.parametrize(
@@ -167,5 +167,5 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     ],
 )
 def test_progress_tells_rate_and_time_left(done: int, elapsed_s: float, words: str) -> None:
-    at = StudyProgress(runs_done=done, runs_found=1000, runs_max=9000, doing="grid")
+    at = Progress(runs_done=done, runs_found=1000, runs_max=9000, doing="grid")
     assert progress_in_words(at, elapsed_s) == words

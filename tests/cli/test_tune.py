@@ -24,7 +24,7 @@ method = "steady_feed"
 objectives = ["strict_share", "median_time_to_release_s"]
 training_runs = 8
 test_runs = {{ first = 100, runs = 16 }}
-trials = 6
+evaluations = 6
 [constraints]
 released_share = {{ at_least = 0.5 }}
 [tune.controller]
@@ -39,7 +39,7 @@ FIGURES = {
 
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave figures out, which take longer than the trials."""
+    """Leave figures out, which take longer than the evaluations."""
     monkeypatch.setattr("breakaway.ask.tuning.writing._draw", lambda *_: None)
 
 
@@ -63,12 +63,12 @@ def test_a_tuning_says_its_result_and_lists_its_files(call: Call, tmp_path: Path
         "digests.txt",
         "manifest.json",
         "summary.json",
-        "trials.csv",
+        "evaluations.csv",
         "pareto.csv",
         "best.toml",
     }
     points = {row["file"] for row in summary["front"]}
-    assert {p.name for p in out.iterdir()} == tables | points | FIGURES | {"parts", ".lock"}
+    assert {p.name for p in out.iterdir()} == tables | points | FIGURES | {"pieces", ".lock"}
     assert all(f"wrote {out / name}" in shown.stdout for name in tables | points | FIGURES)
     method = bk.load_method(out / "best.toml")
     assert method.name == "steady_feed_tuned"
@@ -85,7 +85,7 @@ def test_a_tuning_says_its_result_and_lists_its_files(call: Call, tmp_path: Path
 @pytest.mark.usefixtures("no_figures")
 def test_one_objective_has_one_method(call: Call, tmp_path: Path) -> None:
     path = write(tmp_path, objectives='objectives = ["strict_share"]')
-    shown = call("tune", path, "--out", tmp_path / "out", "--trials", "2")
+    shown = call("tune", path, "--out", tmp_path / "out", "--evaluations", "2")
     assert "as it was" in shown.stdout and "best.toml, recommended" in shown.stdout
     assert not list((tmp_path / "out").glob("pareto_*.toml"))
 
@@ -93,28 +93,28 @@ def test_one_objective_has_one_method(call: Call, tmp_path: Path) -> None:
 @pytest.mark.usefixtures("no_figures")
 def test_a_folder_that_holds_a_tuning_wants_resume(call: Call, tmp_path: Path) -> None:
     path, out = write(tmp_path), tmp_path / "out"
-    call("tune", path, "--out", out, "--trials", "2")
+    call("tune", path, "--out", out, "--evaluations", "2")
     refused = call("tune", path, "--out", out)
     assert (refused.exit_code, refused.stdout) == (2, "")
     assert "already holds this tuning; go on with --resume" in refused.stderr
     more = call("tune", path, "--out", out, "--resume", "--json")
-    assert json.loads(more.stdout)["trials"] == 6
-    fewer = call("tune", path, "--out", out, "--resume", "--trials", "3")
+    assert json.loads(more.stdout)["evaluations"] == 6
+    fewer = call("tune", path, "--out", out, "--resume", "--evaluations", "3")
     assert (fewer.exit_code, "give at least 6" in fewer.stderr) == (2, True)
 
 
 @pytest.mark.usefixtures("no_figures")
 def test_nothing_feasible_is_a_finding(call: Call, tmp_path: Path) -> None:
     path = write(tmp_path, released_share="p99_peak_over_breakaway = { at_most = 0.001 }")
-    shown = call("tune", path, "--out", tmp_path / "out", "--trials", "2")
+    shown = call("tune", path, "--out", tmp_path / "out", "--evaluations", "2")
     assert shown.exit_code == 0
-    assert "none of 2 trials met all constraints" in shown.stdout
+    assert "none of 2 evaluations met all constraints" in shown.stdout
 
 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"trials": "trials = 0"}, "trials: 0 is not >= 1"),
+        ({"evaluations": "evaluations = 0"}, "evaluations: 0 is not >= 1"),
         (
             {"test_runs": "test_runs = { first = 7, runs = 9 }"},
             "parts 7 to 7 would be tuned on and",
@@ -155,7 +155,7 @@ def test_a_tuning_does_not_write_over_its_file(call: Call, tmp_path: Path) -> No
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
-    path, out = write(tmp_path, trials="trials = 10000"), tmp_path / "out"
+    path, out = write(tmp_path, evaluations="evaluations = 10000"), tmp_path / "out"
     process = subprocess.Popen(
         [*COMMAND, "tune", str(path), "--out", str(out)],
         stdout=subprocess.PIPE,
@@ -163,9 +163,9 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
         text=True,
         env=os.environ | {"COLUMNS": "100"},
     )
-    trials = out / "parts" / "trials.jsonl"
+    evaluations = out / "pieces" / "evaluations.jsonl"
     try:
-        while not trials.exists() or trials.read_bytes().count(b"\n") < 3:
+        while not evaluations.exists() or evaluations.read_bytes().count(b"\n") < 3:
             assert process.poll() is None, process.communicate()
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
@@ -174,7 +174,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
         process.kill()
     assert (process.returncode, stdout) == (130, "")
     assert stderr == (
-        f"finished trials are kept; go on with: breakaway tune {path} --out {out} --resume\n"
+        f"what is finished is kept; go on with: breakaway tune {path} --out {out} --resume\n"
         "interrupted\n"
     )
 

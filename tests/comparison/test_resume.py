@@ -42,7 +42,7 @@ def small(whole: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give a comparison in many files, as TOML."""
     asked = Asked.parse(
         bk.compare_methods(whole / "comparison.toml", runs=1).asked.model_dump()
-        | {"runs": 24, "runs_per_part": 2}
+        | {"runs": 24, "runs_per_piece": 2}
     )
     path = tmp_path_factory.mktemp("small") / "small.toml"
     path.write_text(asked.toml())
@@ -63,12 +63,12 @@ def test_a_killed_process_loses_no_finished_part(small, tmp_path):
     undisturbed, folder = tmp_path / "undisturbed", tmp_path / "killed"
     bk.compare_methods(small, out=undisturbed)
     process = subprocess.Popen([sys.executable, "-c", SCRIPT, str(small), str(folder)])
-    while len(list((folder / "parts").glob("part-*"))) < 5:
+    while len(list((folder / "pieces").glob("piece-*"))) < 5:
         assert process.poll() is None
         time.sleep(0.002)
     process.send_signal(signal.SIGKILL)
     process.communicate()
-    kept = {p: p.stat().st_mtime_ns for p in (folder / "parts").glob("part-*")}
+    kept = {p: p.stat().st_mtime_ns for p in (folder / "pieces").glob("piece-*")}
     assert 5 <= len(kept) < 72
     assert not (folder / "summary.json").exists()
     found = []
@@ -81,14 +81,14 @@ def test_a_killed_process_loses_no_finished_part(small, tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
-def test_ctrl_c_keeps_finished_parts(small, tmp_path):
+def test_ctrl_c_keeps_finished_pieces(small, tmp_path):
     def stop(at):
         if at.runs_done >= 31:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         bk.compare_methods(small, out=tmp_path / "out", progress=stop)
-    assert len(list((tmp_path / "out" / "parts").iterdir())) == 15
+    assert len(list((tmp_path / "out" / "pieces").iterdir())) == 15
 
 
 def test_a_finished_comparison_computes_and_draws_nothing(whole, tmp_path, monkeypatch):
@@ -109,28 +109,28 @@ def test_a_missing_file_of_the_end_is_made_again(whole, tmp_path):
 
 
 @pytest.mark.usefixtures("no_figures")
-def test_damaged_parts_are_computed_again_and_said(whole, tmp_path):
+def test_damaged_pieces_are_computed_again_and_said(whole, tmp_path):
     folder = shutil.copytree(whole, tmp_path / "damaged")
-    files = sorted((folder / "parts").iterdir())
+    files = sorted((folder / "pieces").iterdir())
     files[0].write_bytes(files[0].read_bytes()[:-20])
     content = bytearray(files[1].read_bytes())
     content[len(content) // 3] ^= 0x10
     files[1].write_bytes(content)
     shutil.copy(files[3], files[2])  # the same parts under another law
-    (folder / "parts" / "part-000099.parquet").write_bytes(b"")
+    (folder / "pieces" / "piece-000099.parquet").write_bytes(b"")
     said = []
     bk.compare_methods(folder / "comparison.toml", out=folder, resume=True, notice=said.append)
     assert contents(folder) == contents(whole)
     assert [sentence.split()[0] for sentence in said[:3]] == [path.name for path in files[:3]]
     assert all(sentence.endswith("its 24 parts are computed again") for sentence in said[:3])
-    assert said[3] == "part-000099.parquet does not belong to the comparison and was removed"
+    assert said[3] == "piece-000099.parquet does not belong to the comparison and was removed"
 
 
 @pytest.mark.usefixtures("no_figures")
-def test_a_foreign_part_is_computed_again_and_said(whole, tmp_path):
+def test_a_foreign_piece_is_computed_again_and_said(whole, tmp_path):
     """The same parts and columns, but for what became of them."""
     folder = shutil.copytree(whole, tmp_path / "mixed")
-    path = folder / "parts" / "part-000001.parquet"
+    path = folder / "pieces" / "piece-000001.parquet"
     table = parquet.read_table(path)
     place = table.schema.get_field_index("largest_jump_m")
     moved = arrow.array(table["largest_jump_m"].to_numpy() * 2.0)
@@ -140,7 +140,7 @@ def test_a_foreign_part_is_computed_again_and_said(whole, tmp_path):
     done = bk.compare_methods(
         folder / "comparison.toml", out=folder, resume=True, notice=said.append
     )
-    assert len(said) == 1 and said[0].startswith("part-000001.parquet is not the one that was ")
+    assert len(said) == 1 and said[0].startswith("piece-000001.parquet is not the one that was ")
     assert contents(folder) == contents(whole)
     assert done.table == bk.compare_methods(whole / "comparison.toml").table
 
@@ -155,10 +155,10 @@ def test_an_edited_table_is_written_anew(whole, tmp_path):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"runs": 23}, "study.runs is 24 there and 23 now"),
-        ({"seed": 1}, "study.seed is 0 there and 1 now"),
-        ({"laws": ["lugre"]}, "study.laws is "),
-        ({"methods": ["steady_feed", "paper_pid", "paper_fm"]}, "study.methods."),
+        ({"runs": 23}, "comparison.runs is 24 there and 23 now"),
+        ({"seed": 1}, "comparison.seed is 0 there and 1 now"),
+        ({"laws": ["lugre"]}, "comparison.laws is "),
+        ({"methods": ["steady_feed", "paper_pid", "paper_fm"]}, "comparison.methods."),
     ],
 )
 def test_another_comparison_is_refused(whole, changes, words):
@@ -178,7 +178,7 @@ def test_without_resume_a_comparison_is_left_alone(whole):
 def test_a_place_that_is_no_folder_is_refused(inputs, tmp_path):
     population, methods = inputs
     (tmp_path / "file").write_text("mine")
-    with pytest.raises(bk.StudyError, match="is a file, not a folder; give a folder"):
+    with pytest.raises(bk.OutputError, match="is a file, not a folder; give a folder"):
         bk.compare_methods(population, methods, out=tmp_path / "file")
     with pytest.raises(bk.OutputError, match="can not be written"):
         bk.compare_methods(population, methods, out=tmp_path / "file" / "out")

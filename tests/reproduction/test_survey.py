@@ -73,11 +73,11 @@ def test_an_interrupted_survey_goes_on_to_the_same_files(whole, tmp_path, runs):
     with pytest.raises(KeyboardInterrupt):
         dataclasses.replace(SMALL, progress=interrupted_after(runs)).run(folder)
     kept = {path: (folder / path).stat().st_mtime_ns for path in contents(folder)}
-    parts = [path for path in kept if path.suffix == ".parquet"]
-    assert len(parts) < 9
+    pieces = [path for path in kept if path.suffix == ".parquet"]
+    assert len(pieces) < 9
     SMALL.run(folder)
     assert contents(folder) == contents(whole)
-    for path in parts:
+    for path in pieces:
         assert (folder / path).stat().st_mtime_ns == kept[path]
 
 
@@ -91,11 +91,11 @@ def test_what_is_done_is_found_and_told(whole):
 def test_a_damaged_level_is_computed_again_and_said(whole, tmp_path):
     folder = tmp_path / "figure_10"
     shutil.copytree(whole, folder)
-    part = next(iter(sorted((folder / "with_vibration_bounded" / "parts").iterdir())))
-    part.write_bytes(part.read_bytes()[:-30])
+    piece = next(iter(sorted((folder / "with_vibration_bounded" / "pieces").iterdir())))
+    piece.write_bytes(piece.read_bytes()[:-30])
     said = []
     dataclasses.replace(SMALL, notice=said.append).run(folder)
-    assert len(said) == 1 and part.name in said[0] and "computed again" in said[0]
+    assert len(said) == 1 and piece.name in said[0] and "computed again" in said[0]
     assert contents(folder) == contents(whole)
 
 
@@ -119,8 +119,8 @@ def test_a_full_disk_tells_how_to_go_on(tmp_path, monkeypatch):
     def full(path, _):
         raise OutputError(f"{path}: can not be written: No space left on device; make room")
 
-    monkeypatch.setattr("breakaway.ask.studies.pieces.write_inside", full)
-    with pytest.raises(OutputError, match="finished parts stay: resume it to go on"):
+    monkeypatch.setattr("breakaway.ask.durable.journal.write_inside", full)
+    with pytest.raises(OutputError, match="what is finished stays: resume it to go on"):
         SMALL.run(tmp_path / "figure_10")
 
 

@@ -79,7 +79,7 @@ def verdicts(done):
 
 
 def test_laws_agree_that_a_force_above_breakaway_frees(tmp_path, short):
-    done = run_study(study_of(short, metrics=["peak_force_n"]), tmp_path)
+    done = run_study(study_of(short, metrics=["peak_force_n"]), out=tmp_path)
     assert verdicts(done) == {"released": "agreed", "peak_force_n": "agreed"}
     assert [row["direction"] for row in done.summary["tables"]["laws"]] == ["higher"] * 8
     assert done.summary["result"][0] == (
@@ -93,7 +93,7 @@ def test_only_lugre_drifts_out_below_breakaway(tmp_path, short):
     """Pulses of 80 % of F_s0 free a part in LuGre, which drifts, and in no other law."""
     agreement = {"relevant": {"final_position_m": 1e-4}}
     study = study_of(short, 1, agreement, VIBRATED, metrics=["final_position_m"])
-    done = run_study(study, tmp_path)
+    done = run_study(study, out=tmp_path)
     assert verdicts(done) == {"released": "only lugre", "final_position_m": "only lugre"}
     assert done.summary["result"][0].startswith(
         "only lugre: pulses releases more often than constant, which nothing else that was asked "
@@ -109,7 +109,7 @@ def test_parts_and_draws_are_the_same_under_every_law(tmp_path, short):
         "joint.stiffness_n_per_m": {"distribution": "uniform", "low": 3e7, "high": 3.6e7},
         "joint.stiction_n": NORMAL,
     }
-    done = run_study(study_of(short, 8, vary=vary, metrics=["peak_force_n"]), tmp_path)
+    done = run_study(study_of(short, 8, vary=vary, metrics=["peak_force_n"]), out=tmp_path)
     table = done.to_pandas()
     grouped = table.groupby(["law", "variant"])["joint.stiction_n"].apply(tuple)
     assert len(grouped) == 8
@@ -144,7 +144,7 @@ def test_rigid_friction_needs_its_stiction(tmp_path, short):
     agreement = {"smallest": SEARCH, "laws": ["coulomb_stiction", "gms"]}
     variants = [{"name": "light"}, {"name": "heavy", "changes": {"part.mass_kg": 2.0}}]
     study = study_of(short, 12, agreement, variants, vary={"joint.stiction_n": NORMAL})
-    done = run_study(study, tmp_path)
+    done = run_study(study, out=tmp_path)
     assert verdicts(done) == {"smallest actuator.force_max_n": "agreed"}
     row = done.summary["tables"]["smallest"][0]
     drawn = bk.draw_columns(study.vary, range(12), seed=0)["joint.stiction_n"]
@@ -159,7 +159,7 @@ def test_rigid_friction_needs_its_stiction(tmp_path, short):
 def test_levels_out_of_reach_are_told(tmp_path, short):
     agreement = {"smallest": SEARCH | {"high": 400.0}, "laws": ["lugre", "gms"]}
     variants = [{"name": "light"}, {"name": "heavy", "changes": {"part.mass_kg": 2.0}}]
-    done = run_study(study_of(short, 1, agreement, variants), tmp_path)
+    done = run_study(study_of(short, 1, agreement, variants), out=tmp_path)
     assert [row["above_highest"] for row in done.summary["tables"]["smallest"]] == [1] * 4
     assert any("4 runs need more than the highest level 400" in n for n in done.summary["notes"])
 
@@ -176,7 +176,7 @@ def test_a_disturbance_of_the_joint_force_moves_what_lugre_holds(tmp_path, short
     }  # fmt: skip
     variants = [{"name": "still"}, {"name": "disturbed", "changes": {"disturbance.var": 0.3}}]
     scenario = short.with_({"limits.breakaway_travel_m": 2e-4})
-    done = run_study(study_of(scenario, 6, agreement, variants), tmp_path)
+    done = run_study(study_of(scenario, 6, agreement, variants), out=tmp_path)
     rows = {(r["law"], r["disturbance"]): r for r in done.summary["tables"]["laws"]}
     assert rows["lugre", "joint_force"]["difference_high"] <= -150.0
     assert rows["lugre", "friction_level"]["direction"] == "same"
@@ -191,9 +191,9 @@ def test_a_study_that_was_run_runs_again_to_the_same_bytes(tmp_path, short):
         {"name": "pulses", "changes": {"controller": bk.FmVibration(**PULSES)}},
     ]
     study = study_of(short, 1, {"laws": ["lugre", "gms"]}, variants, metrics=["peak_force_n"])
-    run_study(study, tmp_path / "one")
-    run_study(load_study(tmp_path / "one" / "study.toml"), tmp_path / "two")
-    for name in ("manifest.json", "summary.json", "study.toml", "parts/part-000000.parquet"):
+    run_study(study, out=tmp_path / "one")
+    run_study(load_study(tmp_path / "one" / "study.toml"), out=tmp_path / "two")
+    for name in ("manifest.json", "summary.json", "study.toml", "pieces/piece-000000.parquet"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
@@ -216,21 +216,21 @@ def test_searches_find_the_first_place(count):
 def test_what_is_interrupted_goes_on_to_the_same_bytes(tmp_path, short):
     agreement = {"smallest": SEARCH | {"resolution": 60.0}, "laws": ["lugre", "gms"]}
     study = study_of(
-        short, 6, agreement, vary={"joint.stiction_n": NORMAL}, runs_per_part=16,
+        short, 6, agreement, vary={"joint.stiction_n": NORMAL}, runs_per_piece=16,
         variants=[{"name": "light"}, {"name": "heavy", "changes": {"part.mass_kg": 2.0}}],
         metrics=["peak_force_n"],
     )  # fmt: skip
     whole = tmp_path / "whole"
-    run_study(study, whole, threads=2)
+    run_study(study, out=whole, threads=2)
 
     def stop(at):
         if at.runs_done >= 40:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run_study(study, tmp_path / "again", progress=stop)
+        run_study(study, out=tmp_path / "again", progress=stop)
     assert not open_study(tmp_path / "again").finished
-    run_study(study, tmp_path / "again", resume=True, threads=1)
+    run_study(study, out=tmp_path / "again", resume=True, threads=1)
     files = [p.relative_to(whole) for p in whole.rglob("*") if p.is_file() and p.name != ".lock"]
     assert len([name for name in files if name.suffix == ".parquet"]) > 3
     for name in files:

@@ -107,10 +107,10 @@ def test_rows_of_the_draws_meet_in_one_run(folder: Path, joint: JointFile) -> No
 
 @pytest.mark.parametrize("text", [TEXT, ROBUSTNESS], ids=["sweep", "robustness"])
 def test_a_study_that_was_run_runs_again_without_the_joint_file(folder: Path, text: str) -> None:
-    run_study(load(folder, text), folder / "one")
+    run_study(load(folder, text), out=folder / "one")
     (folder / "parts" / "joint.toml").unlink()
     again = load_study(folder / "one" / "study.toml")
-    run_study(again, folder / "two")
+    run_study(again, out=folder / "two")
     first, second = (
         json.loads((folder / name / "summary.json").read_text())["result"]
         for name in ("one", "two")

@@ -40,7 +40,7 @@ def test_a_known_failure_probability_is_recovered(tmp_path, pushed, largest_stic
     study = study_of(
         "sweep", pushed, runs=3000, vary={"joint.stiction_n": NORMAL}, metrics=["peak_force_n"]
     )
-    done = run_study(study, tmp_path)
+    done = run_study(study, out=tmp_path)
     stiction = done.scan(["joint.stiction_n"])["joint.stiction_n"].to_numpy()
     released = np.array(done.scan(["outcome"])["outcome"].to_pylist()) == "released"
     np.testing.assert_array_equal(released, stiction <= largest_stiction_n)
@@ -64,9 +64,9 @@ def test_the_interval_covers_a_known_probability_as_often_as_it_says(pushed, lar
 
 def test_a_grid_has_every_combination_and_the_same_draws(tmp_path, quick):
     grid = {"joint.stiction_n": [400.0, 500.0], "disturbance.law": ["uniform", "gaussian"]}
-    study = study_of("sweep", quick, runs=5, runs_per_part=7, sweep={"grid": grid})
-    done = run_study(study, tmp_path)
-    assert [len(file.read_bytes()) > 0 for file in done.part_files] == [True] * 3
+    study = study_of("sweep", quick, runs=5, runs_per_piece=7, sweep={"grid": grid})
+    done = run_study(study, out=tmp_path)
+    assert [len(file.read_bytes()) > 0 for file in done.piece_files] == [True] * 3
     table = done.scan().to_pandas()
     assert table.groupby("point").run_index.apply(list).tolist() == [[0, 1, 2, 3, 4]] * 4
     for point, (stiction, law) in enumerate(
@@ -87,8 +87,8 @@ def test_parts_do_not_change_the_draws(tmp_path, quick, design):
     values = {"runs": 64, "design": design, "vary": {"joint.stiction_n": SPREAD}}
     tables = []
     for size in (64, 9):
-        study = study_of("sweep", quick, runs_per_part=size, metrics=["peak_force_n"], **values)
-        tables.append(run_study(study, tmp_path / str(size), threads=1).scan())
+        study = study_of("sweep", quick, runs_per_piece=size, metrics=["peak_force_n"], **values)
+        tables.append(run_study(study, out=tmp_path / str(size), threads=1).scan())
     assert tables[0].equals(tables[1])
     stiction = tables[0]["joint.stiction_n"].to_numpy()
     if design != "random":
@@ -97,7 +97,7 @@ def test_parts_do_not_change_the_draws(tmp_path, quick, design):
 
 def test_reading_is_lazy_and_selective(tmp_path, pushed):
     study = study_of("sweep", pushed, runs=200, vary={"joint.stiction_n": NORMAL})
-    run_study(study, tmp_path)
+    run_study(study, out=tmp_path)
     done = open_study(tmp_path)
     stuck = done.scan(["run_index", "peak_force_n"], dataset.field("outcome") == "not_released")
     assert 0 < stuck.num_rows < 100
@@ -114,7 +114,7 @@ def test_a_run_replays_to_the_same_bits(tmp_path, quick):
     study = study_of(
         "sweep", quick, runs=4, vary={"joint.stiction_n": SPREAD}, sweep={"grid": grid}
     )
-    done = run_study(study, tmp_path)
+    done = run_study(study, out=tmp_path)
     for row in done.scan().to_pylist():
         again = done.replay(row["point"], row["run_index"])
         assert again.metrics.iae_m_s == row["iae_m_s"]
@@ -172,7 +172,7 @@ def test_the_level_that_is_claimed_is_right_as_often_as_it_says(pushed, largest_
 
 
 def test_the_result_says_what_it_means(tmp_path, pushed):
-    done = run_study(robust(pushed), tmp_path)
+    done = run_study(robust(pushed), out=tmp_path)
     summary = done.summary
     assert re.fullmatch(
         r"part_scale = 5\.5 survived with failure probability <= 0\.1 at 95 % confidence "
@@ -195,7 +195,7 @@ def test_the_result_says_what_it_means(tmp_path, pushed):
 def test_a_disturbance_is_named_with_the_result(tmp_path, quick):
     asked = {"over": "disturbance.var", "low": 0.1, "high": 0.31, "resolution": 0.01}
     study = robust(quick, runs=50, vary={}, asked=asked | {"failure": ["diverged"]})
-    result = run_study(study, tmp_path).summary["result"][0]
+    result = run_study(study, out=tmp_path).summary["result"][0]
     assert result == (
         "disturbance.var = 0.31 at least, the highest level tried, survived with failure "
         "probability <= 0.1 at 95 % confidence (0 failures in 50 runs; failure: diverged; uniform "
@@ -289,7 +289,7 @@ def test_draws_of_the_disturbance_are_an_input(tmp_path, quick):
     vary = {"part.mass_kg": {"distribution": "uniform", "low": 1.0, "high": 1.0001}}
     metrics = ["peak_force_n", "time_to_release_s", "impacts"]
     study = study_of("sensitivity", quick, runs=64, vary=vary, metrics=metrics)
-    done = run_study(study, tmp_path)
+    done = run_study(study, out=tmp_path)
     summary = done.summary
     found = {row["input"]: row for row in summary["tables"]["indices"]}
     assert found["disturbance draws"]["total_order"] > 0.7
@@ -308,7 +308,7 @@ def test_a_missing_salib_is_named(tmp_path, quick, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "SALib.analyze.sobol", None)
     study = study_of("sensitivity", quick, runs=8, vary={"joint.stiction_n": SPREAD})
     with pytest.raises(StudyError, match=r"pip install 'breakaway\[sensitivity\]'"):
-        run_study(study, tmp_path / "out")
+        run_study(study, out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
@@ -325,12 +325,12 @@ def test_controllers_are_compared_pair_by_pair(tmp_path, pushed, largest_stictio
         "compare",
         pushed,
         runs=300,
-        runs_per_part=128,
+        runs_per_piece=128,
         vary={"joint.stiction_n": NORMAL},
         metrics=["peak_force_n", "time_to_release_s"],
         compare={"controllers": controllers},
     )
-    done = run_study(study, tmp_path)
+    done = run_study(study, out=tmp_path)
     table = done.to_pandas()
     by_name = {name: rows.set_index("run_index") for name, rows in table.groupby("controller")}
     weak, strong = by_name["weak"], by_name["strong"]
@@ -351,7 +351,7 @@ def test_controllers_are_compared_pair_by_pair(tmp_path, pushed, largest_stictio
 
 @pytest.mark.parametrize("name", ["manifest.json", "summary.json"])
 def test_json_is_strict(tmp_path, pushed, name):
-    run_study(study_of("sweep", pushed, runs=2, vary={"joint.stiction_n": NORMAL}), tmp_path)
+    run_study(study_of("sweep", pushed, runs=2, vary={"joint.stiction_n": NORMAL}), out=tmp_path)
 
     def refuse(word):
         raise AssertionError(word)

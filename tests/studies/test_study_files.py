@@ -197,7 +197,7 @@ def test_draws_out_of_range_are_found_before_anything_runs(tmp_path, pushed, tab
         "vary": {"joint.stiction_n": table},
     }
     with pytest.raises(StudyError, match=r"run \d+: ") as error:
-        run_study(parse_study(values), tmp_path / "out")
+        run_study(parse_study(values), out=tmp_path / "out")
     assert words in str(error.value)
     assert not (tmp_path / "out").exists()
 

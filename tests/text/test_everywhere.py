@@ -320,7 +320,7 @@ def tuning(name: str) -> dict[str, Any]:
         "tune": {"controller.speed_m_per_s": {"low": 0.01, "high": 0.04}},
         "training_runs": 4,
         "test_runs": {"first": 1000, "runs": 4},
-        "trials": 2,
+        "evaluations": 2,
     }
 
 

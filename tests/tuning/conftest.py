@@ -39,7 +39,7 @@ def feed(parts: bk.PartPopulation) -> Callable[..., bk.Tuning]:
             "tune": {SPEED: {"low": 0.01, "high": 0.04}},
             "training_runs": 12,
             "test_runs": {"first": 1000, "runs": 24},
-            "trials": 15,
+            "evaluations": 15,
         }
         return bk.Tuning.parse(values | changes)
 
@@ -48,7 +48,7 @@ def feed(parts: bk.PartPopulation) -> Callable[..., bk.Tuning]:
 
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave figures out, which take longer than the trials."""
+    """Leave figures out, which take longer than the evaluations."""
     monkeypatch.setattr("breakaway.ask.tuning.writing._draw", lambda *_: None)
 
 

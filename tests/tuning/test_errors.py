@@ -42,7 +42,7 @@ SPAN = {"low": 0.01, "high": 0.04}
         ({"constraints": {"p99_impacts": {"at_most": 0.0}}}, "at_most: 0.0 is not > 0"),
         ({"laws": ["lugre", "lugre"]}, "names a law twice"),
         ({"laws": ["lugr"]}, "laws"),
-        ({"trials": 0}, "trials: 0 is not >= 1"),
+        ({"evaluations": 0}, "evaluations: 0 is not >= 1"),
         ({"training_runs": 0}, "training_runs: 0 is not >= 1"),
         ({"method": "steady_fed"}, "did you mean steady_feed?"),
         ({"population": "seized"}, "is neither a file nor a preset"),
@@ -84,17 +84,17 @@ def test_what_a_scenario_refuses_is_a_trial_with_its_reason(feed, tmp_path):
         method="paper_fm",
         tune={"controller.vibration.frequency_min_hz": {"low": 10.0, "high": 300.0}},
         objectives=["released_share"],
-        trials=12,
+        evaluations=12,
     )
-    done = bk.tune(tuning, tmp_path)
+    done = bk.tune(tuning, out=tmp_path)
     refused = [e for e in done.evaluations if e.laws is None]
     assert 0 < len(refused) < 12
     for evaluation in refused:
         assert "is not <= frequency_max_hz = 160.0; swap them" in evaluation.refused
         assert evaluation.numbers["controller.vibration.frequency_min_hz"] > 160.0
     assert done.summary["refused"] == len(refused)
-    assert f"{len(refused)} trials were refused" in " ".join(done.summary["notes"])
-    rows = (tmp_path / "trials.csv").read_text().splitlines()[1:]
+    assert f"{len(refused)} evaluations were refused" in " ".join(done.summary["notes"])
+    rows = (tmp_path / "evaluations.csv").read_text().splitlines()[1:]
     assert sum(",refused," in row and "swap them" in row for row in rows) == len(refused)
 
 
@@ -103,24 +103,26 @@ def test_when_all_is_refused_that_is_the_result(feed, tmp_path):
     tuning = feed(
         method="paper_fm",
         tune={"controller.vibration.frequency_min_hz": {"low": 200.0, "high": 300.0}},
-        trials=2,
+        evaluations=2,
     )
-    done = bk.tune(tuning, tmp_path)
-    assert done.summary["result"][0].startswith("every one of 2 trials was refused, the last one: ")
+    done = bk.tune(tuning, out=tmp_path)
+    assert done.summary["result"][0].startswith(
+        "every one of 2 evaluations was refused, the last one: "
+    )
 
 
 def test_a_missing_optuna_names_the_extra(feed, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "optuna", None)
     with pytest.raises(bk.StudyError, match=r"pip install 'breakaway\[tune\]'"):
-        bk.tune(feed(), tmp_path / "out")
+        bk.tune(feed(), out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("name", ["trials", "threads"])
+@pytest.mark.parametrize("name", ["evaluations", "threads"])
 @pytest.mark.parametrize("value", [0, -1, 1.5, True])
 def test_counts_are_checked(feed, tmp_path, name, value):
     with pytest.raises(bk.StudyError, match=rf"{name}: {value} is not a whole number >= 1"):
-        bk.tune(feed(), tmp_path / "out", **{name: value})
+        bk.tune(feed(), out=tmp_path / "out", **{name: value})
     assert not (tmp_path / "out").exists()
 
 

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("no_figures")
 
 
 def test_the_fastest_feed_takes_the_least_time(feed, tmp_path):
-    done = bk.tune(feed(trials=25), tmp_path)
+    done = bk.tune(feed(evaluations=25), out=tmp_path)
     assert done.best_numbers[SPEED] > 0.038
     assert done.best.controller.speed_m_per_s == done.best_numbers[SPEED]
     slower = [e for e in done.evaluations if e.numbers[SPEED] < 0.9 * done.best_numbers[SPEED]]
@@ -32,8 +32,8 @@ def test_the_fastest_feed_takes_the_least_time(feed, tmp_path):
 def test_a_constraint_holds_the_feed_back(feed, tmp_path):
     """A part leaves at about the speed of the feed: the best is as fast as the limit."""
     limit = 0.02
-    tuning = feed(constraints={"p100_release_velocity_m_per_s": {"at_most": limit}}, trials=30)
-    done = bk.tune(tuning, tmp_path)
+    tuning = feed(constraints={"p100_release_velocity_m_per_s": {"at_most": limit}}, evaluations=30)
+    done = bk.tune(tuning, out=tmp_path)
     assert 0.85 * limit < done.best_numbers[SPEED] < 1.05 * limit
     trial = bk.run_trial(tuning.population, done.best, runs=tuning.training, seed=tuning.seed)
     assert trial.metrics["release_velocity_m_per_s"].max() <= limit
@@ -43,10 +43,10 @@ def test_a_constraint_holds_the_feed_back(feed, tmp_path):
 def test_scores_are_those_of_a_trial(feed, tmp_path):
     """On training and unseen parts, under the law where each is worst."""
     laws = ["lugre", "coulomb_stiction"]
-    tuning = feed(laws=laws, trials=3, objectives=["strict_share", "median_time_to_release_s"])
-    done = bk.tune(tuning, tmp_path)
+    tuning = feed(laws=laws, evaluations=3, objectives=["strict_share", "median_time_to_release_s"])
+    done = bk.tune(tuning, out=tmp_path)
     for runs, on in ((tuning.training, "training"), (tuning.test_runs.numbers, "unseen")):
-        for method, of in ((done.best, done.summary["recommended"]["trial"]), (None, None)):
+        for method, of in ((done.best, done.summary["recommended"]["evaluation"]), (None, None)):
             trials = {
                 law: bk.run_trial(
                     tuning.population, method or tuning.method, law=law, runs=runs, seed=0
@@ -58,7 +58,7 @@ def test_scores_are_those_of_a_trial(feed, tmp_path):
                 law: np.sort(t.metrics["time_to_release_s"])[len(runs) // 2 - 1]
                 for law, t in trials.items()
             }
-            name = "start" if of is None else f"trial {of}"
+            name = "start" if of is None else f"evaluation {of}"
             rows = [r for r in done.summary["scores"] if (r["of"], r["on"]) == (name, on)]
             found = {(row["score"], row["law"]): row["value"] for row in rows}
             for law in laws:
@@ -69,12 +69,12 @@ def test_scores_are_those_of_a_trial(feed, tmp_path):
 
 
 def test_the_method_as_it_is_comes_first(feed, tmp_path):
-    tuning = feed(trials=2)
-    done = bk.tune(tuning, tmp_path)
+    tuning = feed(evaluations=2)
+    done = bk.tune(tuning, out=tmp_path)
     assert done.evaluations[0].numbers == tuning.start == {SPEED: 0.0125}
-    outside = feed(trials=2, tune={SPEED: {"low": 0.02, "high": 0.04}})
+    outside = feed(evaluations=2, tune={SPEED: {"low": 0.02, "high": 0.04}})
     assert outside.start is None
-    done = bk.tune(outside, tmp_path / "outside")
+    done = bk.tune(outside, out=tmp_path / "outside")
     assert "is outside the ranges" in " ".join(done.summary["notes"])
     assert [r["value"] for r in done.summary["scores"] if r["of"] == "start"]
 
@@ -84,23 +84,23 @@ def test_what_does_not_free_is_not_gentle(feed, tmp_path):
     tuning = feed(
         tune={SPEED: {"low": 1e-5, "high": 1e-4}},
         objectives=["median_largest_jump_m"],
-        trials=3,
+        evaluations=3,
     )
-    done = bk.tune(tuning, tmp_path)
+    done = bk.tune(tuning, out=tmp_path)
     assert not any(is_feasible(tuning, evaluation) for evaluation in done.evaluations)
     for evaluation in done.evaluations:
         assert violations_of(tuning, evaluation) == {"median_largest_jump_m is finite": 1.5}
     assert done.summary["recommended"] is None
-    assert "none of 3 trials met all constraints" in done.summary["result"][0]
+    assert "none of 3 evaluations met all constraints" in done.summary["result"][0]
     assert not (tmp_path / "best.toml").exists()
-    with pytest.raises(bk.StudyError, match="none of 3 trials met all constraints"):
+    with pytest.raises(bk.StudyError, match="none of 3 evaluations met all constraints"):
         _ = done.best
     assert done.front == []
 
 
 def test_two_objectives_trade(feed, tmp_path):
     tuning = feed(objectives=["p100_release_velocity_m_per_s", "median_time_to_release_s"])
-    done = bk.tune(tuning, tmp_path)
+    done = bk.tune(tuning, out=tmp_path)
     front = pareto_front(tuning, done.evaluations)
     values = np.array([values_of(tuning, evaluation) for evaluation in front])
     assert len(values) > 4

@@ -12,7 +12,7 @@ from breakaway.ask.tuning.summary import verdict
 @pytest.mark.usefixtures("no_figures")
 def test_few_parts_are_overfitted(feed, tmp_path):
     """Tuned on one part alone: the summary says what is worth to believe."""
-    done = bk.tune(feed(objectives=["strict_share"], training_runs=1, trials=4), tmp_path)
+    done = bk.tune(feed(objectives=["strict_share"], training_runs=1, evaluations=4), out=tmp_path)
     (row,) = done.summary["overfitting"]
     assert (row["score"], row["training"]) == ("strict_share", 1.0)
     unseen = bk.run_trial(

@@ -45,6 +45,7 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
     called = kind_of(manifest).called
     existed = is_there(folder)
     try:
+        _refuse_file(folder)
         _refuse_links_in(folder)
         found = is_there(folder / MANIFEST)
         if found:
@@ -69,6 +70,11 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
             yield journal
         except OutputError as error:
             raise OutputError(f"{error}; what is finished stays: resume it to go on") from None
+
+
+def _refuse_file(folder: Path) -> None:
+    if is_there(folder) and not is_folder(folder):
+        raise FileExistsError
 
 
 def _refuse_links_in(folder: Path) -> None:

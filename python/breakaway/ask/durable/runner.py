@@ -85,8 +85,9 @@ class Runner:
         """
         kept = [piece_name(number) for number in range(self._pieces)]
         if self._journal is not None:
+            known = set(kept)
             for name in pieces_in(self._journal.folder):
-                if name not in kept:
+                if name not in known:
                     self._journal.remove(name)
                     self.say(
                         f"{Path(name).name} does not belong to the {self._called} and was removed"

@@ -56,9 +56,7 @@ def load_study(path: str | Path) -> Study:
     return load_table(path, "study", lambda values, at: parse_study(_from_folder(values, at)))
 
 
-def load_table(
-    path: str | Path, what: str, build: Callable[[dict[str, Any], Path], Built]
-) -> Built:
+def load_table(path: object, what: str, build: Callable[[dict[str, Any], Path], Built]) -> Built:
     """Build what a TOML file describes from its values and its folder; errors name the file.
 
     Raises
@@ -67,6 +65,8 @@ def load_table(
         There is no such file, it is not TOML, or what it describes can not be built.
 
     """
+    if not isinstance(path, str | Path):
+        raise StudyError(f"path: {shown(path)} is not a path; give the path of a {what}")
     file = Path(path)
     missing = f"there is no such file; give the path of a {what}"
     values = table_of(text_of(file, StudyError, missing), file, StudyError)
