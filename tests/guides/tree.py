@@ -13,7 +13,8 @@ from tests.guides.applying import Files
 ROOT = Path(__file__).parents[2]
 TARGET = ROOT / "target"
 TREE = TARGET / "guides"
-SOURCES = ("Cargo.toml", "Cargo.lock", "rustfmt.toml", "pyproject.toml", "crates", "python", "tests")
+SETTINGS = ("Cargo.toml", "Cargo.lock", "rustfmt.toml", "pyproject.toml")
+SOURCES = (*SETTINGS, "crates", "python", "tests")
 BUILT = ("__pycache__", "_core.abi3.so")
 """What arises in the tree and stays there."""
 PROGRAMS = {
@@ -41,6 +42,7 @@ def sources() -> Files:
 
 def lay_out(files: Files) -> None:
     """Make the tree these files. What is the same stays as old as it is, so that cargo sees it."""
+    TREE.mkdir(parents=True, exist_ok=True)
     for path in set(_paths(TREE)) - set(files):
         (TREE / path).unlink()
     for path, content in files.items():
@@ -52,7 +54,8 @@ def lay_out(files: Files) -> None:
 
 def build() -> None:
     """Check that all of Rust compiles, tests too, and put the extension into its place."""
-    run("cargo check -q --locked --workspace --exclude breakaway-python --all-targets --features serde")
+    rust = "--workspace --exclude breakaway-python --all-targets --features serde"
+    run(f"cargo check -q --locked {rust}")
     run("cargo build -q --locked -p breakaway-python")
     extension = (TARGET / "debug/lib_core.so").read_bytes()
     (TREE / "python/breakaway/_core.abi3.so").write_bytes(extension)
@@ -74,7 +77,7 @@ def run(command: str) -> None:
 
 def _paths(root: Path) -> list[str]:
     """Give the paths of all sources in a tree, from its root; all but what is built there."""
-    tops = [root / name for name in (SOURCES if root == ROOT else os.listdir(root))]
+    tops = [root / name for name in SOURCES] if root == ROOT else list(root.iterdir())
     found = [path for top in tops for path in ([top] if top.is_file() else top.rglob("*"))]
     return [
         str(path.relative_to(root))
