@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from tests.guides import tree
@@ -24,9 +25,8 @@ def test_all_guides_are_followed_and_what_they_add_works() -> None:
     python = sorted({step.path for step in STEPS if step.path.endswith(".py")})
     tree.run(f"ruff check {' '.join(python)}")
     tree.run(f"ruff format --check {' '.join(python)}")
-    for guide in GUIDES:
-        for command in commands(guide):
-            tree.run(command)
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(tree.run, [command for guide in GUIDES for command in commands(guide)]))
 
 
 @pytest.mark.parametrize("guide", GUIDES, ids=lambda guide: guide.stem)

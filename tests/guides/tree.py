@@ -22,6 +22,9 @@ PROGRAMS = {
     "python": sys.executable,
     "ruff": str(Path(sys.executable).with_name("ruff")),
 }
+STACK_KIB = 64 << 10
+"""Of every thread: what is not optimized needs more than is usual."""
+IN_LARGE_STACK = ("sh", "-c", f'ulimit -s {STACK_KIB} && exec "$@"', "sh")
 # Quick to compile, slow to run. Packages of others are compiled once for all trees.
 ENVIRONMENT = {
     **os.environ,
@@ -29,7 +32,7 @@ ENVIRONMENT = {
     "CARGO_PROFILE_DEV_OPT_LEVEL": "0",
     "CARGO_PROFILE_DEV_DEBUG": "0",
     "CARGO_NET_OFFLINE": "true",
-    "RUST_MIN_STACK": str(64 << 20),  # what is not optimized needs more than 2 MiB
+    "RUST_MIN_STACK": str(STACK_KIB << 10),
     "PYO3_PYTHON": sys.executable,
     "PYTHONPATH": str(TREE / "python"),
 }
@@ -65,7 +68,7 @@ def run(command: str) -> None:
     """Run a command in the tree; where it fails, what it said is the error."""
     program, *arguments = shlex.split(command, comments=True)
     done = subprocess.run(
-        [PROGRAMS.get(program, program), *arguments],
+        [*IN_LARGE_STACK, PROGRAMS.get(program, program), *arguments],
         cwd=TREE,
         env=ENVIRONMENT,
         capture_output=True,
