@@ -150,7 +150,9 @@ def test_what_is_out_of_range_is_refused(call, said):
         call(JOINTS["gms"])
 
 
-@pytest.mark.parametrize("given", ["paper_as_computed", None, bk.load_scenario("paper_as_computed")])
+@pytest.mark.parametrize(
+    "given", ["paper_as_computed", None, bk.load_scenario("paper_as_computed")]
+)
 def test_what_is_no_joint_is_refused(given):
     askers = (
         steepest_fall_velocity,
