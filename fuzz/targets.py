@@ -125,7 +125,7 @@ TARGETS: dict[str, Target] = {
     **{f"toml_{name}": load_with(load) for name, load in TOML.items()},
     "study_manifest": StudyFolder("manifest.json"),
     "study_summary": StudyFolder("summary.json"),
-    "study_part": StudyFolder("pieces/piece-000000.parquet"),
+    "study_piece": StudyFolder("pieces/piece-000000.parquet"),
 }
 """Names of targets -> what is done with the bytes."""
 

@@ -100,6 +100,15 @@ def test_a_comparison_runs_again_from_its_file(
 
 
 @pytest.mark.usefixtures("no_figures")
+def test_a_file_is_no_folder(call: Call, given: list[str], tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    failed = call(*given, "--out", str(tmp_path / "file"), "--json")
+    assert (failed.exit_code, failed.stdout) == (3, "")
+    assert "is a file, not a folder; give a folder" in failed.stderr
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+@pytest.mark.usefixtures("no_figures")
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -107,17 +116,12 @@ def test_a_comparison_runs_again_from_its_file(
         (["--method", "steady_fed"], "did you mean steady_feed"),
         (["--runs", "0"], "runs: 0 is not >= 1"),
         (["--baseline", "none"], "baselines: 'none' is not one of slow, fast"),
-        (["--out", "FILE"], "is a file, not a folder; give a folder"),
     ],
 )
 def test_what_makes_no_sense_exits_with_2(
     call: Call, given: list[str], tmp_path: Path, words: list[str], said: str
 ) -> None:
-    (tmp_path / "FILE").write_text("mine")
-    words = [str(tmp_path / word) if word == "FILE" else word for word in words]
-    if "--out" not in words:
-        words += ["--out", str(tmp_path / "out")]
-    failed = call(*given, *words, "--json")
+    failed = call(*given, *words, "--out", str(tmp_path / "out"), "--json")
     assert (failed.exit_code, failed.stdout) == (2, "")
     assert failed.stderr.startswith("error: ")
     assert said in failed.stderr

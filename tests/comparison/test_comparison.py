@@ -226,6 +226,21 @@ def test_a_range_of_parts_is_these_parts(inputs, tmp_path):
     assert bk.compare_methods(tmp_path / "out" / "comparison.toml").asked == done.asked
 
 
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"laws": ["lugr"]}, "laws: 'lugr' is not one of .*; did you mean 'lugre'?"),
+        ({"laws": []}, "laws: "),
+        ({"laws": ["gms", "gms"]}, "laws: 'gms' is there twice"),
+        ({"runs": 0}, "runs: 0 is not >= 1"),
+        ({"seed": -1}, "seed: -1 is not >= 0"),
+        ({"methods": []}, "methods: "),
+        ({"methods": ["none"]}, "none: is neither a file nor a preset; presets: "),
+        ({"baselines": ["none"]}, "baselines: 'none' is not one of follow, ramp, weak"),
+        ({"threads": 0}, "threads: 0 is not a whole number >= 1"),
+        ({"population": "none"}, "none: is neither a file nor a preset"),
+    ],
+)
 def test_what_makes_no_sense_is_refused(inputs, tmp_path, changes, words):
     population, methods = inputs
     asked = {"population": population, "methods": methods, "out": tmp_path / "out", **changes}
