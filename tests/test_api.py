@@ -6,7 +6,6 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -103,6 +102,51 @@ def test_dataset(rough):
     assert data.attrs["outcome"] == run.outcome
 
 
+def test_a_frame(rough, monkeypatch):
+    run = bk.simulate(rough)
+    frame = run.to_pandas()
+    assert frame.index.name == "t_s"
+    for name in COLUMNS[1:]:
+        np.testing.assert_array_equal(frame[name], run.trace[name])
+    with pytest.raises(bk.ScenarioError, match=r"^trace\.every_samples: is 0"):
+        bk.simulate(rough.with_({"trace.every_samples": 0})).to_pandas()
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(bk.StudyError, match=r"pip install 'breakaway\[pandas\]'"):
+        run.to_pandas()
+
+
+def test_warnings(scenario):
+    assert bk.simulate(scenario).warnings == ()
+    changes = {
+        "limits.diverged_force_n": 400.0,
+        "limits.breakaway_travel_m": 1e-5,
+        "controller.gains": bk.Gains(kp_n_per_m=-1.0, ki_n_per_m_s=1e9, kd_n_s_per_m=700.0),
+    }
+    said = bk.simulate(scenario.with_(changes)).warnings
+    starts = (
+        "diverged at ",
+        "limits.breakaway_travel_m = 10 µm is within the presliding travel 12.5 µm",
+        "controller.gains: one is negative: kp = -1 N/m",
+        "the joint let go at ",
+    )
+    assert len(said) >= 3
+    for sentence in said:
+        assert sentence.startswith(starts) and len(sentence.splitlines()) == 1
+
+
+def test_results_are_shown_in_a_line(scenario):
+    named = scenario.with_(name="<b>5 & 6")
+    for result in (bk.simulate(named), bk.simulate_many(named, 3)):
+        line = repr(result)
+        assert "<b>5 & 6" in line
+        assert "released" in line
+        assert len(line) < 200 and len(line.splitlines()) == 1
+        assert "&lt;b&gt;5 &amp; 6" in result._repr_html_()
+        assert "<b>" not in result._repr_html_()
+    assert len(repr(bk.Samples(values=[1.0] * 100_000))) < 200
+    assert "peak_force_n=" in repr(bk.simulate(named).metrics)
+
+
 def test_designing(scenario):
     gains = bk.design.pole_placement(
         scenario.joint, mass_kg=1.0, settling_time_s=5e-4, damping_ratio=1.0, pole_per_s=200.0
@@ -122,6 +166,20 @@ def test_changing(scenario):
     changed = scenario.with_(disturbance=bk.UniformDisturbance(var=0.05, hold_s=1e-4), seed=7)
     assert (changed.disturbance.var, changed.seed) == (0.05, 7)
     assert bk.simulate(changed).seed == 7
+
+
+def test_importing_is_quick_and_a_star_gives_every_name():
+    """Numbers and tables are loaded with the first name that needs them."""
+    code = (
+        "import sys, breakaway\n"
+        "heavy = {'numpy', 'pyarrow', 'pydantic', 'scipy'} & sys.modules.keys()\n"
+        "assert not heavy, heavy\n"
+        "from breakaway import *\n"
+        "missing = set(breakaway.__all__) - globals().keys()\n"
+        "assert not missing, missing\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("first", ["simulate", "resolve", "impose_motion"])
@@ -161,113 +219,10 @@ def test_names_are_sorted_and_unique():
         _ = bk.simulat
 
 
-def public_functions():
-    for home, name in HOMES:
-        value = getattr(home, name)
-        if inspect.isfunction(value):
-            yield name, value
-        elif inspect.isclass(value):
-            for inner, method in vars(value).items():
-                function = getattr(method, "__func__", method)
-                if not inner.startswith("_") and inspect.isfunction(function):
-                    yield f"{name}.{inner}", function
-
-
-FUNCTIONS = dict(public_functions())
-
-
-def parameters_of(function):
-    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
-    return {
-        name: stars.get(parameter.kind, "")
-        for name, parameter in inspect.signature(function).parameters.items()
-        if name not in ("self", "cls")
-    }
-
-
-def test_functions_are_found():
-    assert {"simulate", "resolve", "pole_placement", "Scenario.with_", "Run.to_xarray"} <= set(
-        FUNCTIONS
-    )
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_every_parameter_is_documented(name):
-    """In a section of its own, as `numpydoc` has it; and no parameter that is not there."""
-    text = inspect.getdoc(FUNCTIONS[name]) or ""
-    assert text, name
-    _, _, after = text.partition("Parameters\n----------\n")
-    section = re.split(r"\n\w+\n-+\n", after)[0]
-    documented = re.findall(r"^(\*{0,2}\w+)(?: : .+)?$", section, re.MULTILINE)
-    expected = [stars + parameter for parameter, stars in parameters_of(FUNCTIONS[name]).items()]
-    assert documented == expected
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_unknown_arguments_are_refused(name):
-    if name in ("Scenario.with_", "Log.using"):  # by name, in tests/scenario and tests/logs
-        return
-    if name == "compare_laws":  # hands its settings on to identify
-        with pytest.raises(TypeError, match="no_such_argument"):
-            bk.compare_laws(
-                bk.Log(t_s=range(10), force_n=range(10)), held_out=(0, 1), no_such_argument=1
-            )
-        return
-    with pytest.raises(TypeError, match="no_such_argument"):
-        inspect.signature(FUNCTIONS[name]).bind_partial(no_such_argument=1)
-    with pytest.raises(TypeError, match=r"no_such_argument|missing|argument"):
-        FUNCTIONS[name](no_such_argument=1)
-
-
 def test_every_figure_is_documented_with_its_unit():
     source = inspect.getsource(bk.RunMetrics)
     for name in bk.RunMetrics.__dataclass_fields__:
         assert re.search(rf'{name}: float\n    """.+', source), name
-
-
-@pytest.mark.parametrize("run_index", [-1, 2**64, 1.5, "0", None])
-def test_a_run_index_out_of_range_is_refused(scenario, run_index):
-    with pytest.raises(bk.ScenarioError, match=rf"^run_index: {run_index!r} is not"):
-        bk.simulate(scenario, run_index=run_index)
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("velocity_m_per_s", [[1e-3]]),
-        ("velocity_m_per_s", [float("nan")]),
-        ("velocity_m_per_s", [float("inf")]),
-        ("period_s", 0.0),
-        ("period_s", -1e-3),
-        ("period_s", float("nan")),
-        ("period_s", float("inf")),
-        ("start_m", float("nan")),
-        ("start_m", float("inf")),
-    ],
-)
-def test_an_imposed_motion_out_of_range_is_refused(scenario, name, value):
-    joint = scenario.joint.model_copy(update={"residual_n": 9.81})
-    good = {"velocity_m_per_s": [1e-3] * 3, "period_s": 1e-3, "start_m": 0.0}
-    assert bk.impose_motion(joint, **good).joint_force_n.size == 3
-    with pytest.raises(bk.ScenarioError, match=rf"^{name}: "):
-        bk.impose_motion(joint, **{**good, name: value})
-    with pytest.raises(bk.ScenarioError, match=r"^joint\.residual_n: is missing; give"):
-        bk.impose_motion(scenario.joint, **good)
-
-
-@pytest.mark.parametrize("given", ["paper_as_computed", Path("mine.toml"), None])
-def test_what_is_no_scenario_is_refused(given, tmp_path):
-    takers = (
-        bk.resolve,
-        bk.simulate,
-        lambda given: bk.simulate_many(given, runs=2),
-        lambda given: bk.export_c(given, out=tmp_path / "c"),
-        lambda given: bk.export_fmu(given, out=tmp_path / "rig.fmu"),
-    )
-    for take in takers:
-        with pytest.raises(bk.ScenarioError, match=r"^scenario: .* is not a Scenario; load_scen"):
-            take(given)
-    assert not list(tmp_path.iterdir())
 
 
 # Reproducibility

@@ -35,7 +35,7 @@ def main() -> None:
     for verdict in best.verdicts:
         if not verdict.identifiable:
             print(f"not identifiable: {verdict.parameter}, {verdict.because}")
-            print(f"    what would tell it: {verdict.remedy}")
+            print(f"    what would determine it: {verdict.remedy}")
     if asked.out is not None:
         predicted = best.predict(spans=[rest])
         samples = best.posterior(2000)

@@ -4,6 +4,7 @@ from breakaway import design as design
 from breakaway._core import __version__ as __version__
 from breakaway.ask.comparison import Comparison as Comparison
 from breakaway.ask.comparison import compare_methods as compare_methods
+from breakaway.ask.durable.progress import Progress as Progress
 from breakaway.ask.studies import AgreementStudy as AgreementStudy
 from breakaway.ask.studies import AgreementTable as AgreementTable
 from breakaway.ask.studies import AgreementVariant as AgreementVariant
@@ -15,7 +16,6 @@ from breakaway.ask.studies import RobustnessTable as RobustnessTable
 from breakaway.ask.studies import SensitivityStudy as SensitivityStudy
 from breakaway.ask.studies import SensitivityTable as SensitivityTable
 from breakaway.ask.studies import SmallestTable as SmallestTable
-from breakaway.ask.studies import StudyProgress as StudyProgress
 from breakaway.ask.studies import StudyResult as StudyResult
 from breakaway.ask.studies import SweepStudy as SweepStudy
 from breakaway.ask.studies import SweepTable as SweepTable

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.cli.written import written_to
 
 from breakaway.ask.comparison.asked import ask
 
@@ -72,7 +73,7 @@ def test_it_says_the_table_and_lists_its_files(
     for sentence in summary["result"]:
         assert sentence in shown.stdout
     for name in ("index.html", "table.csv", "comparison.toml", "shares.svg"):
-        assert f"wrote {out / name}" in shown.stdout
+        assert name in written_to(out, shown.stdout)
     assert "lugre: shares of 6 parts" in shown.stdout
     assert "two_region: median, and 99 %" in shown.stdout
     assert re.search(r"slow +100 \(54.1 to 100\)", shown.stdout)

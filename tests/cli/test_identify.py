@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from breakaway.cli.identify import LawChoice, LogFormat, LossChoice, MotionChoice
+from breakaway.cli.identify_options import LawChoice, LogFormat, LossChoice, MotionChoice
 from breakaway.measure.identification import (
     LAWS,
     NOT_IDENTIFIED,
@@ -243,7 +244,7 @@ def test_a_report_is_written_beside_the_joint_file(
     out = tmp_path / "joint.toml"
     words = words_of(call("identify", log_csv, *law, "--out", out, "--report"))
     page = tmp_path / "joint.html"
-    assert f"wrote {page}" in words
+    assert f"wrote 2 files to {tmp_path}{os.sep}: joint.toml, joint.html" in words
     text = page.read_text()
     assert text.lower().startswith("<!doctype html>")
     assert "motor.csv" in text

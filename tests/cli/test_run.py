@@ -9,6 +9,7 @@ from typing import Any
 
 import pyarrow.parquet as parquet
 import pytest
+from tests.cli.written import written_to
 
 import breakaway as bk
 
@@ -53,7 +54,7 @@ def test_writes_a_folder_that_reruns_to_the_same_bits(call: Call, tmp_path: Path
     shown = call("run", noisy, "--out", first, "--seed", 2**62)
     assert shown.exit_code == 0
     assert {path.name for path in first.iterdir()} == FILES
-    assert all(f"wrote {first / name}" in shown.stdout for name in FILES)
+    assert written_to(first, shown.stdout) == FILES
     assert call("run", first / "scenario.toml", "--out", second).exit_code == 0
     for name in FILES:
         assert (first / name).read_bytes() == (second / name).read_bytes(), name

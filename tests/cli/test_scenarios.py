@@ -21,11 +21,14 @@ COMMANDS = ("run", "design", "identify", "presets", "init", "schema", "reproduce
 
 def test_presets_are_listed(call: Call) -> None:
     found = json.loads(call("presets", "--json").stdout)
-    assert [preset["name"] for preset in found] == bk.preset_names()
+    folders = {"scenario": "", "method": "methods", "population": "populations", "stack": "stacks"}
+    listed = [(preset["kind"], preset["name"]) for preset in found]
+    assert listed == [(kind, name) for kind in folders for name in bk.preset_names(folders[kind])]
     shown = call("presets").stdout
     for preset in found:
         assert preset["description"]
         assert preset["description"] in shown
+        assert all(use in shown for use in preset["used_by"])
 
 
 def test_schema_is_printed_and_written(call: Call, tmp_path: Path) -> None:
@@ -102,7 +105,7 @@ def test_help_has_examples(call: Call, command: str) -> None:
     shown = call(command, "--help")
     assert shown.exit_code == 0
     assert "Examples" in shown.stdout
-    assert f"breakaway {command} " in shown.stdout
+    assert f"breakaway {command}" in shown.stdout.split("Examples")[1]
     assert call(command, "-h").stdout == shown.stdout
 
 
@@ -112,8 +115,9 @@ def test_top_help_lists_commands_and_exit_codes(call: Call) -> None:
         assert words in shown
 
 
-def test_version(call: Call) -> None:
-    assert call("--version").stdout == f"breakaway {bk.__version__}\n"
+@pytest.mark.parametrize("option", ["--version", "-V"])
+def test_version(call: Call, option: str) -> None:
+    assert call(option).stdout == f"breakaway {bk.__version__}\n"
 
 
 def test_starts_without_heavy_imports() -> None:

@@ -1,6 +1,7 @@
 """What is shown is whole on any terminal, and readable."""
 
 import io
+import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -11,7 +12,8 @@ from typing import Any
 import pytest
 
 from breakaway.cli.quantity import show_uncertain, show_value, split_unit
-from breakaway.cli.show import Sheet, plain, say
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import plain, say
 from breakaway.run.finished import RunMetrics
 
 Call = Callable[..., Any]
@@ -36,19 +38,63 @@ def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     return made
 
 
-def test_a_narrow_terminal_hides_no_number(
-    terminal: Terminal, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(sys, "stdout", terminal)
-    sheet = Sheet("Title", ["name", "value", "why"], numbers=["value"], prose=["why"])
-    sheet.add("a name that is long", "-1234567.891 kN", "because of this and that and more")
-    sheet.add("another", "1", "")
+def shown_at(width: int, sheet: Sheet, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    made = Terminal()
+    monkeypatch.setenv("COLUMNS", str(width))
+    monkeypatch.setattr(sys, "stdout", made)
     say(sheet)
-    shown = terminal.getvalue()
-    for words in ("a name that is long", "-1234567.891 kN", "more", "another"):
+    lines = re.sub(r"\x1b\[[0-9;]*m", "", made.getvalue()).splitlines()
+    assert max(map(len, lines)) <= width
+    return lines
+
+
+@pytest.mark.usefixtures("terminal")
+@pytest.mark.parametrize("width", range(24, 80, 7))
+def test_no_width_breaks_a_number(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    sheet = Sheet("Title", ["name", "value", "why"], numbers=["value"], prose=["why"])
+    sheet.add("a long name", "-1234567.891 kN", "because of this and that")
+    sheet.add("another", "1", "")
+    shown = "\n".join(shown_at(width, sheet, monkeypatch))
+    for words in ("Title", "a long name", "-1234567.891 kN", "because", "that", "another"):
         assert words in shown
-    assert max(len(line) for line in shown.splitlines()) > 30  # than to break a number
     assert "…" not in shown
+
+
+@pytest.mark.usefixtures("terminal")
+def test_a_table_that_is_too_wide_becomes_tables_with_the_same_labels(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    sheet = Sheet("", ["law", "force", "speed"], numbers=["force", "speed"])
+    sheet.add("lugre", "1234567890 N", "0.25 mm/s")
+    sheet.add("gms", "2 N", "0.5 mm/s")
+    rows = [line.split() for line in shown_at(30, sheet, monkeypatch) if line.strip()]
+    assert [row for row in rows if row[0].isalpha()] == [
+        ["law", "force"],
+        ["lugre", "1234567890", "N"],
+        ["gms", "2", "N"],
+        ["law", "speed"],
+        ["lugre", "0.25", "mm/s"],
+        ["gms", "0.5", "mm/s"],
+    ]
+    whole = [line.split() for line in shown_at(60, sheet, monkeypatch) if line.strip()]
+    assert ["lugre", "1234567890", "N", "0.25", "mm/s"] in whole
+
+
+@pytest.mark.usefixtures("terminal")
+def test_labels_that_leave_no_room_are_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    sheet = Sheet("", ["law", "quantity", "value"], numbers=["value"])
+    sheet.add("elasto_plastic", "time to release", "495.03 ms")
+    rows = [line.split() for line in shown_at(34, sheet, monkeypatch) if line.strip()]
+    assert rows == [
+        ["law", "elasto_plastic"],
+        ["quantity", "time", "to", "release"],
+        ["value", "495.03", "ms"],
+    ]
+
+
+def test_a_row_has_a_cell_for_every_column() -> None:
+    with pytest.raises(ValueError, match="1 cells in a table of 2 columns"):
+        Sheet("", ["a", "b"]).add("1")
 
 
 def test_text_is_not_markup(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:

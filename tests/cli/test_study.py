@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.cli.written import written_to
 
 import breakaway as bk
 from breakaway.ask.durable.progress import Progress
@@ -64,7 +65,7 @@ def test_every_kind_says_its_result_and_lists_its_files(
         assert sentence in shown.stdout
     names = ALWAYS | TABLES[kind]
     assert {path.name for path in out.iterdir()} == names | {"pieces", ".lock"}
-    assert all(f"wrote {out / name}" in shown.stdout for name in names)
+    assert written_to(out, shown.stdout) == names
     again = call("study", out / "study.toml", "--out", tmp_path / "again", "--json")
     content = json.loads(again.stdout)
     assert content.pop("files") == [str(tmp_path / "again" / name) for name in sorted(names)]

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.cli.written import written_to
 
 import breakaway as bk
 
@@ -69,7 +70,7 @@ def test_a_tuning_says_its_result_and_lists_its_files(call: Call, tmp_path: Path
     }
     points = {row["file"] for row in summary["front"]}
     assert {p.name for p in out.iterdir()} == tables | points | FIGURES | {"pieces", ".lock"}
-    assert all(f"wrote {out / name}" in shown.stdout for name in tables | points | FIGURES)
+    assert written_to(out, shown.stdout) == tables | points | FIGURES
     method = bk.load_method(out / "best.toml")
     assert method.name == "steady_feed_tuned"
     speed = summary["recommended"]["numbers"]["controller.speed_m_per_s"]

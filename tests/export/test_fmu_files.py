@@ -107,7 +107,7 @@ def test_without_a_compiler_there_are_sources(
 
 
 def test_what_can_not_be_written_says_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(bk.ScenarioError, match="'4' is not one of '2', '3'"):
+    with pytest.raises(bk.ScenarioError, match="fmi: '4' is not one of 2, 3"):
         bk.export_fmu(paper(), fmi="4", out=tmp_path / "rig.fmu")
     with pytest.raises(bk.ScenarioError, match=r"seed: .* take a smaller seed or FMI 3"):
         bk.export_fmu(paper().with_(seed=2**40), what="loop", fmi="2", out=tmp_path / "rig.fmu")

@@ -344,7 +344,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"repeats": [(0.0, 0.5), (0.4, 1.0)]}, "span 0.4 s to 1 s .* without overlap"),
     ({"repeats": [(1.0, 1.5), (0.0, 0.5)]}, "span 0 s to 0.5 s .* in order"),
     ({"repeats": [(math.nan, 1.0)]}, r"repeats: .* is not a list of \(start_s, end_s\)"),
-    ({"repeats": [(0.1,)]}, r"repeats: .* is not a list of \(start_s, end_s\)"),
+    ({"repeats": [(0.1,)]}, r"repeats: .* is not a list of pairs of numbers"),
     ({"fixed": {"coulomb_n": -5.0}}, r"fixed\.coulomb_n: -5.0 is not within"),
     ({"fixed": {"mass_kg": -1.0}}, r"fixed\.mass_kg: -1.0 is not within 0"),
     ({"fixed": {"mass_kg": "1"}}, r"fixed\.mass_kg: '1' is not a number"),
@@ -375,7 +375,7 @@ def test_refuses_a_setting_by_name(rich: Log, settings: dict[str, Any], words: s
 
 @pytest.mark.parametrize(
     "controller",
-    [None, "pid", Pid(gains={"kind": "pole_placement", "settling_time_s": 1, "damping_ratio": 1})],
+    [None, Pid(gains={"kind": "pole_placement", "settling_time_s": 1, "damping_ratio": 1})],
 )
 def test_a_closed_loop_needs_a_controller_with_numbers(looped: Log, controller: Any) -> None:
     with pytest.raises(LogError, match=r"controller: .* needs a Cascade, or a Pid whose gains"):

@@ -228,7 +228,7 @@ def test_refuses_a_lowpass_out_of_range(lowpass_hz: float) -> None:
 
 @pytest.mark.parametrize("decimation", [0, -1, True, 2.5])
 def test_refuses_a_decimation_out_of_range(decimation: int) -> None:
-    with pytest.raises(LogError, match=r"decimation is .* whole number of at least 1"):
+    with pytest.raises(LogError, match=r"decimation:? .* whole number"):
         identify_inertia_friction(synthetic(), decimation=decimation)
 
 

@@ -247,7 +247,7 @@ def test_values_that_can_not_be_fitted(values: list[float], bounds: list[int], w
 
 def test_settings_are_checked(like: BreakawayReport) -> None:
     reports = [report_of((f, 50.0, False), like=like) for f in (100.0, 120.0, 90.0)]
-    with pytest.raises(LogError, match="distribution is 'weibull'; it must be one of log_normal"):
+    with pytest.raises(LogError, match="distribution: 'weibull' is not one of log_normal"):
         fit_population(reports, distribution="weibull")  # type: ignore[arg-type]
     with pytest.raises(LogError, match=r"confidence is 95; it must be > 0 and < 1"):
         fit_population(reports, confidence=95)

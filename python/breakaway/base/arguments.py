@@ -1,103 +1,171 @@
-"""Arguments of public functions: what is of a wrong kind is refused where it comes in."""
+"""Arguments of public functions: what is of a wrong kind is refused where it comes in.
+
+The annotations of a function say what it takes, and nothing else does: `check_arguments` reads
+them. What they can not say, such as a range, is left to the function.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from math import isfinite
+import types
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
+from functools import cache
 from numbers import Real
 from os import PathLike
 from pathlib import Path
+from typing import Any, Literal, NoReturn, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
 
 from breakaway.base.text import brief, shown
-from breakaway.errors import BreakawayError, StudyError
+from breakaway.errors import BreakawayError, LogError, OutputError, ScenarioError, StudyError
 
 Refusal = type[BreakawayError]
 """Class of the error that refuses an argument."""
+
+REMEDIES: dict[str, tuple[Refusal, str]] = {
+    "Identification": (LogError, "identify gives one"),
+    "InertiaFrictionFit": (LogError, "identify_inertia_friction gives one"),
+    "Log": (LogError, "read_log gives that of a file"),
+    "Method": (ScenarioError, "load_method gives that of a preset or a file"),
+    "PartPopulation": (ScenarioError, "load_population gives that of a preset or a file"),
+    "SweepStudy": (StudyError, "load_study gives that of a file"),
+    "Scenario": (ScenarioError, "load_scenario gives that of a preset or a file"),
+    "Tuning": (StudyError, "load_tuning gives that of a file"),
+}
+"""Name of a class -> the error where something else is given, and how to come by one."""
 
 FIRST_RUN_MAX = 2**63 - 1
 """Largest number that the first of some runs may have."""
 
 
-def check_kind(
-    name: str, value: object, kinds: type | tuple[type, ...], remedy: str, error: Refusal
+def check_arguments(
+    function: Callable[..., object], arguments: Mapping[str, object], error: Refusal
 ) -> None:
-    """Refuse what is of none of the kinds, such as the name of a preset in place of a scenario.
+    """Refuse arguments that are not of the kinds that a function's annotations say.
+
+    Called first thing in a public function, with ``locals()``. The error is of the class given, but
+    for what has one of its own: a destination ``out``, and the classes of `REMEDIES`.
 
     Examples
     --------
-    >>> check_kind("mapping", 5, dict, "give a table of keys", StudyError)
+    >>> def wait(duration_s: float, *, times: int = 1, told: Callable[[], None] | None = None):
+    ...     check_arguments(wait, locals(), StudyError)
+    >>> wait(1)
+    >>> wait(1.0, times="twice")
     Traceback (most recent call last):
         ...
-    breakaway.errors.StudyError: mapping: 5 is not a dict; give a table of keys
+    breakaway.errors.StudyError: times: 'twice' is not a whole number; give a whole number
 
     """
-    if isinstance(value, kinds):
-        return
-    names = [kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
-    article = "an" if names[0][0] in "AEIOU" else "a"
-    raise error(f"{name}: {shown(value)} is not {article} {' or '.join(names)}; {remedy}")
+    for name, hint in _hints(function).items():
+        if name in arguments and not _fits(arguments[name], hint):
+            _refuse(name, arguments[name], hint, OutputError if name == "out" else error)
 
 
-def path_of(name: str, value: object, error: Refusal) -> Path:
-    """Give a path, or refuse what is none.
-
-    Examples
-    --------
-    >>> path_of("path", "motor.csv", StudyError).suffix
-    '.csv'
-    >>> path_of("path", ["motor.csv"], StudyError)
-    Traceback (most recent call last):
-        ...
-    breakaway.errors.StudyError: path: ['motor.csv'] is not a path; give a str or a Path
-
-    """
-    if not isinstance(value, str | PathLike):
-        raise error(f"{name}: {shown(value)} is not a path; give a str or a Path")
-    return Path(value)
+@cache
+def _hints(function: Callable[..., object]) -> dict[str, Any]:
+    """Give the annotations of the parameters, but for those whose names type checkers alone see."""
+    hints = {}
+    for name, text in function.__annotations__.items():
+        alone = types.SimpleNamespace(__annotations__={name: text})
+        with suppress(NameError):
+            hints[name] = get_type_hints(alone, function.__globals__)[name]
+    hints.pop("return", None)
+    return hints
 
 
-def is_number(value: object) -> bool:
-    """Whether a value is a real number; a truth is none.
-
-    Examples
-    --------
-    >>> is_number(1.5), is_number(float("nan")), is_number("1.5"), is_number(True)
-    (True, True, False, False)
-
-    """
-    return isinstance(value, Real) and not isinstance(value, bool)
-
-
-def check_finite(name: str, value: object, error: Refusal) -> None:
-    """Refuse what is not a finite number.
-
-    Examples
-    --------
-    >>> check_finite("start_s", "0.5", StudyError)
-    Traceback (most recent call last):
-        ...
-    breakaway.errors.StudyError: start_s: '0.5' is not a finite number; give a number
-
-    """
-    if not (isinstance(value, Real) and is_number(value) and isfinite(value)):
-        raise error(f"{name}: {shown(value)} is not a finite number; give a number")
+def _fits(value: object, hint: Any) -> bool:  # noqa: ANN401 - any annotation
+    """Whether a value is of the kind of an annotation; what is not understood fits everything."""
+    origin, inner = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return any(_fits(value, one) for one in inner)
+    if origin is Literal:
+        return any(type(value) is type(one) and value == one for one in inner)
+    if origin is tuple and Ellipsis not in inner:
+        return isinstance(value, tuple | list) and _all_fit(value, inner)
+    if origin is Callable:
+        return callable(value)
+    if origin in (Sequence, Iterable, list, tuple):
+        return _is_list(value, origin, inner[0])
+    if origin in (Mapping, dict):
+        return isinstance(value, Mapping) and all(_fits(key, inner[0]) for key in value)
+    if hint in (int, float):
+        return isinstance(value, Real if hint is float else int) and not isinstance(value, bool)
+    if hint is Path:
+        return isinstance(value, PathLike)
+    if isinstance(origin, type):  # such as an array of numbers
+        return isinstance(value, origin)
+    return not _is_class(hint) or isinstance(value, hint)
 
 
-def is_whole(value: object) -> bool:
-    """Whether a value is a whole number; a truth is none.
-
-    Examples
-    --------
-    >>> is_whole(3), is_whole(3.0), is_whole(True)
-    (True, False, False)
-
-    """
-    return isinstance(value, int) and not isinstance(value, bool)
+def _is_list(value: object, origin: object, element: object) -> bool:
+    """Whether a value is a list of its kind; words of which some are known are left to others."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return False
+    if not isinstance(value, Sequence):
+        return origin is Iterable  # which looking at would use up
+    return get_origin(element) is Literal or all(_fits(one, element) for one in value)
 
 
-def check_whole(
-    name: str, value: object, error: Refusal, low: int, high: int | None = None
-) -> None:
+def _all_fit(values: Sequence[object], hints: Sequence[object]) -> bool:
+    return len(values) == len(hints) and all(map(_fits, values, hints))
+
+
+def _is_class(hint: object) -> bool:
+    return isinstance(hint, type) and hint is not Any and not getattr(hint, "_is_protocol", False)
+
+
+def _refuse(name: str, value: object, hint: object, error: Refusal) -> NoReturn:
+    kinds = [one for one in _alternatives(hint) if one is not types.NoneType]
+    words = " or ".join(dict.fromkeys(_words(one) for one in kinds))
+    names = [getattr(one, "__name__", "") for one in kinds]
+    error, remedy = next((REMEDIES[n] for n in names if n in REMEDIES), (error, f"give {words}"))
+    end = "" if get_origin(kinds[0]) is Literal else f"; {remedy}"
+    raise error(f"{name}: {shown(value)} is not {words}{end}")
+
+
+def _alternatives(hint: object) -> tuple[Any, ...]:
+    """Give what a union is of; a text that may stand for a path is a path."""
+    if get_origin(hint) not in (Union, types.UnionType):
+        return (hint,)
+    inner = get_args(hint)
+    return tuple(one for one in inner if not (one is str and Path in inner))
+
+
+_WORDS = {
+    bool: "True or False",
+    int: "a whole number",
+    float: "a number",
+    str: "a text",
+    Path: "a path",
+}
+_PLURALS = {int: "whole numbers", float: "numbers", str: "names"}
+
+
+def _words(hint: Any) -> str:  # noqa: ANN401 - any annotation
+    origin, inner = get_origin(hint), get_args(hint)
+    if origin is Literal:
+        return f"one of {', '.join(map(str, inner))}"
+    if origin is Callable:
+        return "a function"
+    if origin is tuple and Ellipsis not in inner:
+        return f"a pair of {_PLURALS[inner[0]]}"
+    if origin in (Sequence, Iterable, list, tuple):
+        kind = _alternatives(inner[0])[-1]
+        if get_origin(kind) is tuple:
+            return "a list of pairs of numbers"
+        return f"a list of {_PLURALS.get(kind, getattr(kind, '__name__', 'names'))}"
+    if origin in (Mapping, dict):
+        return "a mapping"
+    if hint in _WORDS:
+        return _WORDS[hint]
+    name = (origin or hint).__name__
+    return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"
+
+
+def check_whole(name: str, value: int, error: Refusal, low: int, high: int | None = None) -> None:
     """Refuse what is not a whole number from ``low`` to ``high``, both included.
 
     Examples
@@ -108,8 +176,7 @@ def check_whole(
     breakaway.errors.StudyError: seed: -1 is not a whole number of at least 0
 
     """
-    within = isinstance(value, int) and low <= value and (high is None or value <= high)
-    if not (within and is_whole(value)):
+    if not (_fits(value, int) and low <= value and (high is None or value <= high)):
         raise error(f"{name}: {shown(value)} is not a whole number {_between(low, high)}")
 
 
@@ -117,7 +184,7 @@ def _between(low: int, high: int | None) -> str:
     return f"of at least {low}" if high is None else f"from {low} to {high}"
 
 
-def run_numbers(runs: object, *, fewest: int = 1, most: int | None = None) -> range:
+def run_numbers(runs: int | range, *, fewest: int = 1, most: int | None = None) -> range:
     """Give the numbers of runs: so many from 0 on, or those of a range.
 
     Examples
@@ -130,19 +197,38 @@ def run_numbers(runs: object, *, fewest: int = 1, most: int | None = None) -> ra
     breakaway.errors.StudyError: runs: 0 is not a whole number of at least 1, nor a range ...
 
     """
-    if isinstance(runs, int) and is_whole(runs):
-        numbers = range(runs)
-    elif isinstance(runs, range) and runs.step == 1 and 0 <= runs.start <= FIRST_RUN_MAX:
-        numbers = runs
-    else:
-        numbers = range(-1)
+    check_arguments(run_numbers, locals(), StudyError)
+    numbers = runs if isinstance(runs, range) else range(runs)
     count = numbers.stop - numbers.start  # len() ends at 2^63
-    if count < fewest or (most is not None and count > most):
+    consecutive = numbers.step == 1 and 0 <= numbers.start <= FIRST_RUN_MAX
+    if not consecutive or count < fewest or (most is not None and count > most):
         raise StudyError(
             f"runs: {shown(runs)} is not a whole number {_between(fewest, most)}, nor a range of "
             "as many, such as range(100, 200)"
         )
     return numbers
+
+
+def column_of(name: str, values: object, error: Refusal) -> NDArray[np.float64]:
+    """Give numbers as a one-dimensional array, or refuse what is none.
+
+    Examples
+    --------
+    >>> column_of("t_s", [0, 1], StudyError)
+    array([0., 1.])
+    >>> column_of("t_s", "now", StudyError)
+    Traceback (most recent call last):
+        ...
+    breakaway.errors.StudyError: t_s: 'now' is not a list of numbers; give one
+
+    """
+    try:
+        column = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        column = np.zeros(())
+    if column.ndim != 1:
+        raise error(f"{name}: {shown(values)} is not a list of numbers; give one")
+    return column
 
 
 def check_choice(name: str, value: object, known: Collection[str], error: Refusal) -> None:
@@ -158,33 +244,3 @@ def check_choice(name: str, value: object, known: Collection[str], error: Refusa
     """
     if not (isinstance(value, str) and value in known):
         raise error(f"{name}: {shown(value)} is not one of {', '.join(map(brief, known))}")
-
-
-def check_flag(name: str, value: object, error: Refusal) -> None:
-    """Refuse what is neither True nor False.
-
-    Examples
-    --------
-    >>> check_flag("resume", "no", StudyError)
-    Traceback (most recent call last):
-        ...
-    breakaway.errors.StudyError: resume: 'no' is not True or False
-
-    """
-    if not isinstance(value, bool):
-        raise error(f"{name}: {shown(value)} is not True or False")
-
-
-def check_callable(name: str, value: object, error: Refusal) -> None:
-    """Refuse what can not be called; nothing may be left out.
-
-    Examples
-    --------
-    >>> check_callable("progress", 5, StudyError)
-    Traceback (most recent call last):
-        ...
-    breakaway.errors.StudyError: progress: 5 is not callable; give a function, or leave it out
-
-    """
-    if value is not None and not callable(value):
-        raise error(f"{name}: {shown(value)} is not callable; give a function, or leave it out")

@@ -12,12 +12,14 @@ from typer.core import TyperGroup
 from breakaway.cli.compare import compare
 from breakaway.cli.design import design
 from breakaway.cli.events import events
-from breakaway.cli.export import export
+from breakaway.cli.export import EXPORT, export
+from breakaway.cli.help import add_command, unwrapped
 from breakaway.cli.identify import identify
+from breakaway.cli.presets import presets
 from breakaway.cli.reproduce import reproduce
 from breakaway.cli.run import run
-from breakaway.cli.scenarios import init, presets, schema
 from breakaway.cli.show import say, say_aside
+from breakaway.cli.starting import init, schema
 from breakaway.cli.streams import ClosedOutput
 from breakaway.cli.study import study
 from breakaway.cli.tune import tune
@@ -27,20 +29,29 @@ INTERRUPTED = 130
 
 HELP = "Free seized parts: identify a joint, design a controller, simulate the extraction."
 
-EPILOG = """
-[bold]Start here[/bold]
-  breakaway presets
-  breakaway run paper_as_computed --out result
-  breakaway init my_joint.toml
-
-[bold]Exit codes[/bold]
-  0    done; a run that diverges is a finding, not an error
-  1    unexpected: a fault of breakaway
-  2    invalid input: command line, scenario, study, joint file or log
-  3    output can not be written
-  4    not stable, where --require-stable asks for it
-  130  interrupted
-"""
+EPILOG = "\n\n".join(
+    [
+        unwrapped(
+            "Start here",
+            [
+                "breakaway presets",
+                "breakaway run paper_as_computed --out result",
+                "breakaway init my_joint.toml",
+            ],
+        ),
+        unwrapped(
+            "Exit codes",
+            [
+                "0    done; a run that diverges is no error",
+                "1    unexpected: a fault of breakaway",
+                "2    invalid input: command line, file or log",
+                "3    output can not be written",
+                "4    not stable, and --require-stable was given",
+                "130  interrupted",
+            ],
+        ),
+    ]
+)
 
 
 class Commands(TyperGroup):
@@ -77,9 +88,8 @@ app = typer.Typer(
     cls=Commands,
     help=HELP,
     epilog=EPILOG,
-    add_completion=False,
     no_args_is_help=True,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -97,89 +107,85 @@ def _print_version(asked: bool) -> None:
 def _options(
     _version: Annotated[
         bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+        typer.Option(
+            "--version", "-V", callback=_print_version, is_eager=True, help="Show the version."
+        ),
     ] = False,
 ) -> None:
     pass
 
 
-def _examples(*lines: str) -> str:
-    return "\n  ".join(("[bold]Examples[/bold]", *lines))
-
-
-app.command(
-    epilog=_examples(
-        "breakaway run paper_as_computed",
-        "breakaway run my_joint.toml --out result --seed 7",
-        "breakaway run result/scenario.toml  # again, bit for bit",
-        "breakaway run paper_as_computed --joint joint.toml",
-        "breakaway run paper_as_computed --json | jq .metrics.peak_force_n",
-    )
-)(run)
-app.command(
-    epilog=_examples(
-        "breakaway study spread.toml --out result",
-        "breakaway study spread.toml --out result --resume",
-        "breakaway study spread.toml --out result --json | jq .result",
-    )
-)(study)
-app.command(
-    epilog=_examples(
-        "breakaway tune gentle.toml --out tuned",
-        "breakaway tune gentle.toml --out tuned --resume --evaluations 200",
-        "breakaway tune gentle.toml --out tuned --json | jq .result",
-    )
-)(tune)
-app.command(
-    epilog=_examples(
-        "breakaway compare --runs 200 --out gallery",
-        "breakaway compare my_parts.toml --method steady_feed --method mine.toml --out gallery",
-        "breakaway compare --laws lugre,coulomb_stiction --runs 100 --seed 7 --out laws",
-        "breakaway compare gallery/comparison.toml --out again",
-    )
-)(compare)
-app.command(
-    epilog=_examples(
-        "breakaway design paper_as_computed",
-        "breakaway design my_joint.toml --require-stable && echo safe to try",
-    )
-)(design)
-app.command(
-    epilog=_examples(
-        "breakaway identify motor.csv --out joint.toml",
-        "breakaway identify motor.tdms --law lugre --asymmetric --out joint.toml --report",
-        "breakaway identify motor.mf4 --law compare --held-out 30:60",
-        "breakaway identify fast.csv --lowpass-hz 400 --decimation 5 --json",
-    )
-)(identify)
-app.command(
-    epilog=_examples(
-        "breakaway events part_1.csv part_2.csv part_3.csv --population",
-        "breakaway events seal.csv --use force_n=friction_n --json",
-    )
-)(events)
-app.command(epilog=_examples("breakaway presets", "breakaway presets --json"))(presets)
-app.command(
-    epilog=_examples(
-        "breakaway init my_joint.toml",
-        "breakaway init my_joint.toml --preset paper_as_printed --force",
-    )
-)(init)
-app.command(epilog=_examples("breakaway schema", "breakaway schema --out scenario.schema.json"))(
-    schema
+add_command(
+    app,
+    run,
+    "breakaway run paper_as_computed",
+    "breakaway run my_joint.toml --out result --seed 7",
+    "breakaway run result/scenario.toml  # again, bit for bit",
+    "breakaway run paper_as_computed --joint joint.toml",
+    "breakaway run my_joint.toml --json | jq .outcome",
 )
-app.command(
-    epilog=_examples(
-        "breakaway reproduce",
-        "breakaway reproduce --out paper",
-        "breakaway reproduce --full --out paper  # figure 10 in minutes, not seconds",
-    )
-)(reproduce)
-app.add_typer(
-    export,
-    name="export",
-    epilog=_examples(
-        "breakaway export c paper_as_computed --what controller --out rig",
-        "breakaway export c my_joint.toml --what loop --real float --out firmware",
-    ),
+add_command(
+    app,
+    study,
+    "breakaway study spread.toml --out result",
+    "breakaway study spread.toml --out result --resume",
+    "breakaway study spread.toml --out result --json",
 )
+add_command(
+    app,
+    tune,
+    "breakaway tune gentle.toml --out tuned",
+    "breakaway tune gentle.toml --out tuned --resume",
+    "breakaway tune gentle.toml --out tuned --json",
+)
+add_command(
+    app,
+    compare,
+    "breakaway compare --runs 200 --out gallery",
+    "breakaway compare my_parts.toml --method mine.toml",
+    "breakaway compare --laws lugre,coulomb_stiction --out laws",
+    "breakaway compare gallery/comparison.toml --out again",
+)
+add_command(
+    app,
+    design,
+    "breakaway design paper_as_computed",
+    "breakaway design my_joint.toml --require-stable && echo stable",
+)
+add_command(
+    app,
+    identify,
+    "breakaway identify motor.csv --out joint.toml",
+    "breakaway identify motor.tdms --law lugre --report",
+    "breakaway identify a.mf4 --law compare --held-out 30:60",
+    "breakaway identify fast.csv --lowpass-hz 400",
+)
+add_command(
+    app,
+    events,
+    "breakaway events part_1.csv part_2.csv --population",
+    "breakaway events seal.csv --use force_n=friction_n --json",
+)
+add_command(app, presets, "breakaway presets", "breakaway presets --json")
+add_command(
+    app,
+    init,
+    "breakaway init my_joint.toml",
+    "breakaway init my_joint.toml --preset paper_as_printed",
+    "breakaway init my_method.toml --kind method",
+    "breakaway init sweep.toml --kind sweep --preset my_joint.toml",
+)
+add_command(
+    app,
+    schema,
+    "breakaway schema --out scenario.schema.json",
+    "breakaway schema --kind study",
+)
+add_command(
+    app,
+    reproduce,
+    "breakaway reproduce",
+    "breakaway reproduce --out paper",
+    "breakaway reproduce --full --out paper  # minutes",
+)
+app.add_typer(export, name="export", short_help=EXPORT)

@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
+from breakaway.cli.completion import friction_laws, method_preset, population_preset
+from breakaway.cli.options import Json, Threads
 from breakaway.cli.progress import shown_progress
-from breakaway.cli.show import Sheet, busy, say, say_aside, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, say, say_aside, say_json, say_written
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -27,20 +30,24 @@ BEST = " *"
 
 def compare(
     population: Annotated[
-        str, typer.Argument(help="Name of a preset, or path of a TOML file.")
+        str,
+        typer.Argument(
+            help="Name of a preset, or path of a TOML file.", autocompletion=population_preset
+        ),
     ] = "seized_parts",
     out: Annotated[
-        Path, typer.Option(help="Folder for pieces, table, figures, page.", metavar="DIR")
+        Path, typer.Option(help="Folder for the results: table, figures, page.", metavar="DIR")
     ] = Path("comparison"),
     runs: Annotated[
-        int | None, typer.Option(help="Parts that each method tries. Left out: 10,000.")
+        int | None, typer.Option(help="How many parts each method gets. Left out: 10,000.")
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the parts. Left out: 0.")] = None,
     method: Annotated[
         list[str] | None,
         typer.Option(
-            help="A method: name of a preset, or a TOML file; repeatable. Left out: all presets.",
+            help="Method: name of a preset, or a TOML file; repeatable. Left out: all presets.",
             metavar="NAME_OR_FILE",
+            autocompletion=method_preset,
         ),
     ] = None,
     laws: Annotated[
@@ -48,30 +55,30 @@ def compare(
         typer.Option(
             help="Friction laws, with commas or repeated. Left out: lugre,elasto_plastic,gms.",
             metavar="LAWS",
+            autocompletion=friction_laws,
         ),
     ] = None,
     baseline: Annotated[
         list[str] | None,
         typer.Option(
-            help="A method to measure the others by; repeatable, the best counts. Left out: all.",
+            help="Method to compare others with; repeatable, the best counts. Left out: all.",
             metavar="NAME",
+            autocompletion=method_preset,
         ),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a comparison that DIR holds.")
+        bool, typer.Option("--resume", help="Continue the comparison in DIR.")
     ] = False,
-    threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    threads: Threads = None,
+    json: Json = False,
 ) -> None:
     """Try methods of extraction on the same parts of a population, under several friction laws.
 
-    POPULATION is the name of a preset or a TOML file: of a population, or the
-    comparison.toml of an earlier comparison, which is then run again. The
-    folder receives the trials in pieces as they finish (Parquet), and in the
-    end table.csv, figures, and index.html, a page that needs no network. A
-    comparison that was interrupted goes on with --resume and computes nothing
+    POPULATION is a preset or a TOML file of a population. It can also be the
+    comparison.toml of an earlier comparison, which is then run again.
+    Results are saved as they finish (Parquet). At the end the folder also
+    holds table.csv, figures, and index.html, a page that needs no network.
+    An interrupted comparison continues with --resume and computes nothing
     twice.
     """
     from breakaway.ask.comparison import compare_methods
@@ -150,13 +157,12 @@ def _show(done: Comparison) -> None:
         say(_outcomes(law, rows), _harm(law, rows))
         if stack:
             say(_wear(law, rows))
-    say("*: best of its column; time, jump, force and velocity among those that free 90 %")
+    say("*: best of its column; time, jump, force and velocity: among methods that free 90 %")
     for sentence in done.result:
         say(sentence)
     for note in done.notes:
         say(f"note: {note}")
-    for path in _files(done):
-        say(f"wrote {path}")
+    say_written(_files(done))
 
 
 def _files(done: Comparison) -> Sequence[Path]:

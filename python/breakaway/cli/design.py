@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from breakaway.cli.options import Json, ScenarioName
 from breakaway.cli.quantity import show, show_digits
-from breakaway.cli.show import Sheet, busy, plain, say, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, plain, say, say_json, say_written
 
 if TYPE_CHECKING:
     from breakaway.design import (
@@ -80,7 +82,7 @@ class Judged:
 
 
 def design(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for design.json and the figures.", metavar="DIR"),
@@ -89,23 +91,23 @@ def design(
         bool,
         typer.Option(
             "--require-stable",
-            help="Exit with 4 unless every gain set is stable, stuck and sliding.",
+            help="Exit with code 4 unless every gain set is stable, both stuck and sliding.",
         ),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
     """Show a controller's gains, margins and poles, and whether it is stable.
 
     Each gain set is judged with the joint stuck and with the joint sliding:
     by Routh and Hurwitz without sampling, and as it runs, with sampling, hold
-    and delay. Where friction falls with speed, the limit cycle that this
-    drives is predicted and compared with a simulated run. An unstable loop is
-    a finding: the exit code is 0, and 4 only where --require-stable is given.
-    Oscillation that falling friction drives is shown, and not counted. A
-    controller without PID has no linear loop and never meets --require-stable.
+    and delay. If friction falls with speed, the resulting limit cycle is
+    predicted and compared with a simulated run. An unstable loop is a
+    finding: the exit code is 0, or 4 with --require-stable. Oscillation that
+    falling friction drives is shown but not counted. A controller without a
+    PID has no linear loop and never meets --require-stable.
 
-    With --out, the folder receives design.json and, for each gain set, Bode
-    plot, Nyquist plot, root locus and limit cycle as PNG and SVG.
+    With --out, the folder gets design.json and, for each gain set, a Bode
+    plot, a Nyquist plot, a root locus and the limit cycle, as PNG and SVG.
     """
     from breakaway.model.scenario import load_scenario
 
@@ -124,8 +126,7 @@ def design(
         say_json(content | {"files": [str(path) for path in files]})
     else:
         _show_all(asked, judged)
-        for path in files:
-            say(f"wrote {path}")
+        say_written(files)
     if require_stable and not stable:
         raise typer.Exit(NOT_STABLE)
 
@@ -182,15 +183,15 @@ def _show_all(scenario: Scenario, judged: list[Judged]) -> None:
         _show(one)
     if judged and scenario.actuator.kind != "ideal":
         say(
-            f"Left out of the loops: the {scenario.actuator.kind} actuator, its limits and its "
+            f"The loops leave out the {scenario.actuator.kind} actuator, with its limits and "
             "dynamics."
         )
 
 
 NO_LOOP = (
-    "A {kind} controller has no linear loop: no gains, no margins, nothing to be stable or "
-    "unstable.\nJudge it by what it does to parts: `breakaway tune` finds its settings, `breakaway "
-    "compare` sets it beside others."
+    "A {kind} controller has no linear loop, so it has no gains or margins and is neither stable "
+    "nor unstable.\nJudge it by what it does to parts: `breakaway tune` finds its settings, and "
+    "`breakaway compare` compares it with others."
 )
 
 
@@ -205,6 +206,7 @@ def _show(one: Judged) -> None:
         f"Stability of {one.role}",
         ["joint", "verdict", "poles (1/s)", "because"],
         prose=["because"],
+        labels=1,
     )
     for regime, loop in (("stuck", one.verdict.stuck), ("sliding", one.verdict.sliding)):
         if loop is None:
@@ -218,7 +220,7 @@ def _show(one: Judged) -> None:
     if one.limit_cycle:
         _show_limit_cycle(one.limit_cycle)
     elif one.role == "pid":
-        say("  Limit cycle: not predicted for this joint and these gains")
+        say("  Limit cycle: no prediction for this joint and these gains")
     say("")
 
 
@@ -228,6 +230,7 @@ def _margins_sheet(one: Judged) -> Sheet:
         f"As {one.role} runs: {_timing(one.pid)}; loop opened at the force",
         ["joint", "verdict", *numbers, "poles (1/s)"],
         numbers=numbers,
+        labels=1,
     )
     for loop in one.loops:
         found = loop.margins
@@ -287,11 +290,11 @@ def _notes(one: Judged) -> Iterator[str]:
     unstable = [loop for loop in one.loops if loop.counts and not loop.margins.stable]
     if not unstable:
         yield (
-            "gain factor: the loop stays stable while all gains are multiplied by one within it; "
-            "phase, delay: what may be added; S = 1/(1+L); poles: ln(z)/T_s"
+            "gain factor: multiplying all gains by a factor in this range keeps the loop stable; "
+            "phase, delay: how much may be added; S = 1/(1+L); poles: ln(z)/T_s"
         )
     for loop in unstable:
-        yield f"{loop.regime}: unstable as it is, so that it has no margins"
+        yield f"{loop.regime}: unstable as it is, so it has no margins"
 
 
 def _show_limit_cycle(found: LimitCycleComparison) -> None:
@@ -317,7 +320,7 @@ def _show_limit_cycle(found: LimitCycleComparison) -> None:
 
 
 SAID = {
-    "agree: oscillation": "falling friction drives one, in prediction and simulation (no "
+    "agree: oscillation": "falling friction drives one, both predicted and simulated (no "
     "disturbance)",
     "agree: none": "none, neither predicted nor simulated (no disturbance)",
     "only predicted": "DISAGREE: predicted, not seen in a run without disturbance",

@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from breakaway.cli.quantity import memory_bytes, show
-from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.cli.measured import measured
+from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Use
+from breakaway.cli.quantity import show
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, say, say_json
 
 if TYPE_CHECKING:
     from breakaway.measure.identification import BreakawayReport, Population
@@ -17,70 +20,45 @@ if TYPE_CHECKING:
 
 def events(
     logs: Annotated[list[Path], typer.Argument(help="Measured logs.", metavar="LOG...")],
-    use: Annotated[
-        list[str] | None,
-        typer.Option(help="Another channel of the log as a channel.", metavar="CHANNEL=OTHER"),
-    ] = None,
+    use: Use = None,
     passed_share: Annotated[
         float,
         typer.Option(
             min=0.0,
             max=1.0,
-            help="Share of the fall from the peak to sliding that must have been recorded, or the "
-            "peak counts as a lower bound.",
+            help="Share of the fall from peak to sliding that must be recorded; otherwise the peak "
+            "counts as a lower bound.",
         ),
     ] = 0.5,
-    mapping: Annotated[
-        Path | None,
-        typer.Option(
-            help="TOML file that names channels, units and signs.",
-            metavar="FILE",
-            show_default="LOG with .toml, if it is there",
-        ),
-    ] = None,
-    memory_gib: Annotated[
-        float | None,
-        typer.Option(
-            help="Most memory in GiB that the content of a log may take.",
-            show_default="half of what is free",
-        ),
-    ] = None,
-    resample_hz: Annotated[
-        float | None,
-        typer.Option(help="Bring channels of different stamps to this rate, by interpolation."),
-    ] = None,
+    mapping: MappingFile = None,
+    memory_gib: MemoryGib = None,
+    resample_hz: ResampleHz = None,
     population: Annotated[
         bool,
         typer.Option(
             "--population",
-            help="Fit how breakaway differs from log to log, each a part of its own.",
+            help="Fit how breakaway differs from log to log; each log is one part.",
         ),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
-    """Find breakaway in logs: force, presliding, loading rate, and what is only a lower bound.
+    """Find breakaway in logs: force, presliding, loading rate, and which are lower bounds.
 
-    A log that begins moving is refused for breakaway, with the reason. The
-    force is taken as it was measured: inertia is not subtracted.
+    A log in which the part already moves at the start is refused, with the
+    reason. The force is used as measured: inertia is not subtracted.
     """
     from breakaway.measure.identification import find_breakaway_events, fit_population
-    from breakaway.measure.logs import read_log
 
     reports, hints = [], []
     with busy("looking for breakaway ..."):
         for path in logs:
-            log = read_log(path, mapping, memory_bytes=memory_bytes(memory_gib))
-            if resample_hz is not None:
-                log = log.resampled(rate_hz=resample_hz)
-            for pair in use or []:
-                channel, sign, other = pair.partition("=")
-                if not (channel and sign and other):
-                    raise typer.BadParameter(f"--use {pair!r} is not of the form CHANNEL=OTHER")
-                log = log.using(**{channel: other})
+            log = measured(
+                path, mapping=mapping, memory_gib=memory_gib, resample_hz=resample_hz, use=use
+            )
             reports.append(find_breakaway_events(log, passed_share=passed_share))
             if not use and "friction_n" in log.channels:
                 hints.append(
-                    f"- {log.name}: force_n is used; --use force_n=friction_n takes friction"
+                    f"- {log.name}: this uses force_n; --use force_n=friction_n takes friction"
                 )
         found = fit_population(reports, passed_share=passed_share) if population else None
     if json:
@@ -102,7 +80,7 @@ def events(
 
 def _table(reports: list[BreakawayReport]) -> Sheet:
     columns = ["log", "time", "breakaway", "", "sliding", "ratio", "presliding", "loading"]
-    shown = Sheet("Breakaway, less the offset", columns, numbers=columns[1:3] + columns[4:])
+    shown = Sheet("Breakaway, offset subtracted", columns, numbers=columns[1:3] + columns[4:])
     for report in reports:
         for event in report.events:
             rate = event.loading_rate_n_per_s
@@ -122,7 +100,7 @@ def _table(reports: list[BreakawayReport]) -> Sheet:
 
 
 def _population(found: Population) -> Sheet:
-    shown = Sheet("Population", ["figure", "parameter", "value", "95 % interval"])
+    shown = Sheet("Population", ["figure", "parameter", "value", "95 % interval"], labels=2)
     for name, fit in found.fits.items():
         for parameter, value in fit.parameters.items():
             low, high = fit.interval[parameter]

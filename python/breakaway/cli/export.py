@@ -9,12 +9,25 @@ from typing import Annotated
 
 import typer
 
-from breakaway.cli.show import busy, say, say_json
+from breakaway.cli.help import add_command, unwrapped
+from breakaway.cli.options import Json, ScenarioName
+from breakaway.cli.show import busy, say, say_json, say_written
+
+EXPORT = "Write a scenario's controller or plant as code that runs elsewhere."
+
 
 export = typer.Typer(
-    help="Write a scenario's controller or plant as code that runs elsewhere.",
+    help=EXPORT,
     no_args_is_help=True,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
+    epilog=unwrapped(
+        "Examples",
+        [
+            "breakaway export c paper_as_computed --out rig",
+            "breakaway export c my_joint.toml --what loop --out rig",
+            "breakaway export fmu paper_as_computed --out rig.fmu",
+        ],
+    ),
 )
 
 
@@ -40,21 +53,20 @@ class Fmi(StrEnum):
     THREE = "3"
 
 
-@export.command("c")
 def export_c(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="Folder for the files.", metavar="DIR")],
     what: Annotated[
-        What, typer.Option(help="The controller with its reference, the plant, or both closed.")
+        What, typer.Option(help="Controller with its reference, plant, or the closed loop of both.")
     ] = What.CONTROLLER,
     real: Annotated[Real, typer.Option(help="The real type of the code.")] = Real.DOUBLE,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
     """Write self-contained C99: header, source, test program, CMakeLists.txt, README.
 
-    The code computes the same bits as the simulation in the same real type,
-    without allocation, and its numbers are parameters that may be changed at
-    run time. Kinds and options of the scenario are fixed in it.
+    The code computes the same bits as the simulation in the same real type
+    and does not allocate memory. The scenario's numbers are parameters that
+    you can change at run time; its kinds and options are fixed.
     """
     from breakaway.export import export_c as write
     from breakaway.model.scenario import load_scenario
@@ -66,8 +78,7 @@ def export_c(
         files = [str(path) for path in written.files]
         say_json({"what": written.what, "real": written.real, "files": files})
         return
-    for path in written.files:
-        say(f"wrote {path}")
+    say_written(written.files)
     source, build = shlex.quote(str(out)), shlex.quote(str(out / "build"))
     say(
         f"Build and test it: cmake -S {source} -B {build} && cmake --build {build} && "
@@ -75,21 +86,21 @@ def export_c(
     )
 
 
-@export.command("fmu")
 def export_fmu(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[Path, typer.Option(help="The file, such as rig.fmu.", metavar="FILE.fmu")],
     what: Annotated[
-        What, typer.Option(help="The controller with its reference, the plant, or both closed.")
+        What, typer.Option(help="Controller with its reference, plant, or the closed loop of both.")
     ] = What.CONTROLLER,
     fmi: Annotated[Fmi, typer.Option(help="Version of the FMI standard.")] = Fmi.THREE,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
-    """Write a unit for co-simulation (FMU): sources, and the library for this host.
+    """Write a co-simulation FMU: sources, and the library for this host.
 
     It computes the same bits as the simulation. A communication step is a whole
-    number of control periods. The library needs a C compiler here: cc, gcc or
-    clang on PATH, or what CC names; without one, the unit holds sources only.
+    number of control periods. Building the library needs a C compiler: cc, gcc
+    or clang on PATH, or the one that CC names. Without one, the FMU holds only
+    sources.
     """
     from breakaway.export import export_fmu as write
     from breakaway.model.scenario import load_scenario
@@ -102,3 +113,19 @@ def export_fmu(
         say_json({**told, "binary": written.binary, "note": written.note})
         return
     say(f"wrote {written.path}: FMI {written.fmi}, {written.binary or written.note}")
+
+
+add_command(
+    export,
+    export_c,
+    "breakaway export c paper_as_computed --what controller --out rig",
+    "breakaway export c my_joint.toml --what loop --real float --out rig",
+    name="c",
+)
+add_command(
+    export,
+    export_fmu,
+    "breakaway export fmu paper_as_computed --out rig.fmu",
+    "breakaway export fmu my_joint.toml --what plant --fmi 2 --out plant.fmu",
+    name="fmu",
+)

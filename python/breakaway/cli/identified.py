@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from breakaway.cli.quantity import show, show_uncertain, split_unit
-from breakaway.cli.show import Sheet
+from breakaway.cli.sheet import Sheet
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,11 +38,13 @@ def regression_tables(fit: InertiaFrictionFit, log: Log, path: Path) -> list[She
         f"{path}: sampled at {fit.sample_rate_hz:.6g} Hz, low-pass {fit.lowpass_hz:g} Hz, "
         f"decimation {fit.decimation}, {fit.symmetric.samples} samples fitted",
         _fit("Symmetric: F = mass a + viscous v + coulomb sign(v) + offset", fit.symmetric),
-        _fit("Asymmetric: friction of its own in each direction, no offset", fit.asymmetric),
+        _fit("Asymmetric: separate friction in each direction, no offset", fit.asymmetric),
     ]
     if fit.not_identified:
         left_open = Sheet(
-            "Not identified: a scenario's own values stay", ["field", "because"], prose=["because"]
+            "Not identified: the scenario's own values stay",
+            ["field", "because"],
+            prose=["because"],
         )
         for field, reason in fit.not_identified.items():
             left_open.add(field, reason)
@@ -83,11 +85,11 @@ def law_tables(
     error = show(_named(found.channel), found.rms_error)
     told = [
         f"RMS error of the {split_unit(found.channel)[0]}: {error} "
-        f"({found.relative_error_percent:.3g} %) on the rows that were fitted"
+        f"({found.relative_error_percent:.3g} %) on the fitted rows"
     ]
     if held_out is not None:
         predicted = show(_named(held_out.channel), held_out.rms_error)
-        told.append(f"RMS error on the rows that were held out: {predicted}")
+        told.append(f"RMS error on the held-out rows: {predicted}")
     told.append(stiction_peak({one.name: one for one in found.estimates}, found.verdicts))
     told += [*found.log.history, *found.notes]
     return [*parts, *(f"- {note}" for note in told)]
@@ -101,7 +103,7 @@ def _estimates(found: Identification) -> Sheet:
     held = ", ".join(f"{name} = {value:g}" for name, value in found.fixed.items())
     title = f"{found.log.name}: {found.law.label}, {found.settings.motion} motion"
     if not found.complete:
-        title += ", STOPPED before it was done: best so far"
+        title += ", STOPPED early: best so far"
     shown = Sheet(
         title + (f" (held: {held})" if held else ""),
         ["parameter", "value", "std. error", "95 % interval", "unit", "told by the log"],
@@ -119,8 +121,8 @@ def _estimates(found: Identification) -> Sheet:
 def _open(found: Identification) -> Sheet:
     shown = Sheet(
         "Not identified",
-        ["parameter", "because", "what would tell it"],
-        prose=["because", "what would tell it"],
+        ["parameter", "because", "what would determine it"],
+        prose=["because", "what would determine it"],
     )
     for one in found.verdicts:
         if not one.identifiable:

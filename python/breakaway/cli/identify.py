@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from breakaway.base.reading import is_file, is_folder, is_there
+from breakaway.cli import identify_options as options
 from breakaway.cli.identified import law_tables, regression_tables
+from breakaway.cli.identify_options import LawChoice, LossChoice, MotionChoice
+from breakaway.cli.measured import measured, pair
+from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Use
 from breakaway.cli.progress import counted
-from breakaway.cli.quantity import memory_bytes
-from breakaway.cli.show import busy, say, say_json
+from breakaway.cli.show import busy, say, say_json, say_written
 
 if TYPE_CHECKING:
     from breakaway.measure.identification import Identification, JointFile
@@ -21,175 +24,64 @@ if TYPE_CHECKING:
     from breakaway.measure.logs import Log
 
 
-class LogFormat(StrEnum):
-    """The formats of `breakaway.measure.logs`; here, so that the command starts without them."""
-
-    CSV = "csv"
-    PARQUET = "parquet"
-    MAT = "mat"
-    HDF5 = "hdf5"
-    TDMS = "tdms"
-    MDF = "mdf"
-    MCAP = "mcap"
-    EMPS = "emps"
-
-
-class LawChoice(StrEnum):
-    """Laws of `breakaway.measure.identification.LAWS`, and all of them, compared."""
-
-    COULOMB = "coulomb"
-    STRIBECK = "stribeck"
-    LUGRE = "lugre"
-    ELASTO_PLASTIC = "elasto_plastic"
-    COMPARE = "compare"
-
-
-class MotionChoice(StrEnum):
-    """Motions of `breakaway.identify`."""
-
-    IMPOSED = "imposed"
-    FREE = "free"
-    CLOSED_LOOP = "closed_loop"
-
-
-class LossChoice(StrEnum):
-    """Losses of `breakaway.identify`."""
-
-    LINEAR = "linear"
-    SOFT_L1 = "soft_l1"
-    HUBER = "huber"
-    CAUCHY = "cauchy"
-
-
 def identify(
     log: Annotated[Path, typer.Argument(help="The measured log.")],
-    law: Annotated[
-        LawChoice | None,
-        typer.Option(
-            help="Friction law that is fitted by simulation; compare fits all and says which pay. "
-            "Left out: mass, Coulomb and viscous friction by regression."
-        ),
-    ] = None,
-    motion: Annotated[
-        MotionChoice,
-        typer.Option(help="imposed: force is predicted; free: position is; closed_loop: force is."),
-    ] = MotionChoice.IMPOSED,
-    asymmetric: Annotated[
-        bool, typer.Option("--asymmetric", help="Levels of their own in each direction.")
-    ] = False,
-    position_dependent: Annotated[
-        bool, typer.Option("--position-dependent", help="Friction that changes with position.")
-    ] = False,
-    controller: Annotated[
-        Path | None,
-        typer.Option(help="TOML file of the rig's controller, for closed_loop.", metavar="FILE"),
-    ] = None,
-    repeat: Annotated[
-        list[str] | None,
-        typer.Option(help="Span in s that is fitted, once per repeat.", metavar="START:END"),
-    ] = None,
-    held_out: Annotated[
-        str | None,
-        typer.Option(help="Span in s that is predicted and not fitted.", metavar="START:END"),
-    ] = None,
-    fix: Annotated[
-        list[str] | None,
-        typer.Option(help="Parameter that is held.", metavar="NAME=VALUE"),
-    ] = None,
-    free: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Parameter that is fitted although the log hardly excites it.", metavar="NAME"
-        ),
-    ] = None,
-    loss: Annotated[
-        LossChoice, typer.Option(help="All but linear are robust to outliers.")
-    ] = LossChoice.LINEAR,
-    starts: Annotated[int, typer.Option(min=1, help="Starts that are followed.")] = 8,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the starts and of draws.")] = 0,
-    posterior: Annotated[
-        int, typer.Option(min=0, help="Draws from the posterior (extra: posterior).", metavar="N")
-    ] = 0,
-    format: Annotated[
-        LogFormat | None, typer.Option(help="Format of the log.", show_default="guessed")
-    ] = None,
-    mapping: Annotated[
-        Path | None,
-        typer.Option(
-            help="TOML file that names channels, units and signs.",
-            metavar="FILE",
-            show_default="LOG with .toml, if it is there",
-        ),
-    ] = None,
-    memory_gib: Annotated[
-        float | None,
-        typer.Option(
-            help="Most memory in GiB that the content of a log may take.",
-            show_default="half of what is free",
-        ),
-    ] = None,
-    use: Annotated[
-        list[str] | None,
-        typer.Option(help="Another channel of the log as a channel.", metavar="CHANNEL=OTHER"),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Joint file to write, for run --joint and for studies.", metavar="FILE"),
-    ] = None,
-    report: Annotated[
-        bool,
-        typer.Option(
-            "--report", help="Write an HTML report too, beside --out or beside the log's name here."
-        ),
-    ] = False,
-    resample_hz: Annotated[
-        float | None,
-        typer.Option(help="Bring channels of different stamps to this rate, by interpolation."),
-    ] = None,
-    lowpass_hz: Annotated[
-        float | None, typer.Option(help="Cutoff of the low-pass on position.")
-    ] = None,
-    decimation: Annotated[
-        int | None,
-        typer.Option(help="Samples per sample of the regression.", show_default="10"),
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    law: options.Law = None,
+    motion: options.Motion = MotionChoice.IMPOSED,
+    asymmetric: options.Asymmetric = False,
+    position_dependent: options.PositionDependent = False,
+    controller: options.Controller = None,
+    repeat: options.Repeat = None,
+    held_out: options.HeldOut = None,
+    fix: options.Fix = None,
+    free: options.Free = None,
+    loss: options.Loss = LossChoice.LINEAR,
+    starts: options.Starts = 8,
+    seed: options.Seed = 0,
+    posterior: options.Posterior = 0,
+    format: options.Format = None,
+    mapping: MappingFile = None,
+    memory_gib: MemoryGib = None,
+    use: Use = None,
+    out: options.Out = None,
+    report: options.Report = False,
+    resample_hz: ResampleHz = None,
+    lowpass_hz: options.LowpassHz = None,
+    decimation: options.Decimation = None,
+    json: Json = False,
 ) -> None:
     """Identify a joint from a log of position and force.
 
-    Without --law: mass, Coulomb and viscous friction by regression, with
-    equal friction in both directions and with friction of its own in each.
-    With --law: by simulation of that law, with intervals, and with what the
-    log can not tell. Ctrl-C ends a fit and shows the best so far.
+    Without --law: mass, Coulomb and viscous friction by regression, once with
+    equal friction in both directions and once with separate levels for each.
+    With --law: that law is fitted by simulation, with intervals, and with what
+    the log can not tell. Ctrl-C ends a fit and shows the best so far.
     """
-    from breakaway.measure.logs import read_log
-
     if out is not None:
         _check_target(log, out)
     page = _page(log, out) if report else None
-    given: dict[str, object] = {
+    only_laws = {
         "--fix": fix,
         "--free": free,
         "--repeat": repeat,
         "--held-out": held_out,
+        "--posterior": posterior,
+        "--controller": controller,
+        "--asymmetric": asymmetric,
+        "--position-dependent": position_dependent,
+        "--motion": motion is not MotionChoice.IMPOSED,
     }
-    given |= {"--posterior": posterior, "--controller": controller, "--asymmetric": asymmetric}
-    given |= {"--position-dependent": position_dependent}
-    given |= {"--motion": motion is not MotionChoice.IMPOSED}
-    _refuse_unused(law, given, decimation)
-    measured = read_log(
+    _refuse_unused(law, only_laws, decimation)
+    read = measured(
         log,
-        mapping,
-        format.value if format else None,
-        memory_bytes=memory_bytes(memory_gib),
+        mapping=mapping,
+        format=format.value if format else None,
+        memory_gib=memory_gib,
+        resample_hz=resample_hz,
+        use=use,
     )
-    if resample_hz is not None:
-        measured = measured.resampled(rate_hz=resample_hz)
-    for pair in use or []:
-        channel, other = _pair(pair, "--use", "CHANNEL=OTHER")
-        measured = measured.using(**{channel: other})
     if law is None:
-        _regress(measured, log, lowpass_hz, decimation, out, page, json)
+        _regress(read, log, lowpass_hz, decimation, out, page, json)
         return
     settings: dict[str, Any] = {
         "motion": motion.value,
@@ -205,7 +97,7 @@ def identify(
         "seed": seed,
     }
     span = None if held_out is None else _span(held_out, "--held-out")
-    _fit(measured, law, settings, span, posterior, out, page, json)
+    _fit(read, law, settings, span, posterior, out, page, json)
 
 
 def _regress(
@@ -233,7 +125,8 @@ def _regress(
         _write_report(page, found)
     if json:
         say_json({"log": str(path), **asdict(fit), "file": str(out) if out else None})
-    _say_written(json, out, page)
+    if not json:
+        say_written([path for path in (out, page) if path is not None])
 
 
 def _fit(
@@ -287,7 +180,8 @@ def _fit(
             "file": None if out is None else str(out),
         }
         say_json(shown)
-    _say_written(json, out, page)
+    if not json:
+        say_written([path for path in (out, page) if path is not None])
 
 
 def _write_report(path: Path, found: Identification, **parts: Any) -> None:  # noqa: ANN401
@@ -297,22 +191,17 @@ def _write_report(path: Path, found: Identification, **parts: Any) -> None:  # n
         save_identification_report(path, found, **parts)
 
 
-def _say_written(json: bool, *paths: Path | None) -> None:
-    if not json:
-        for path in paths:
-            if path is not None:
-                say(f"wrote {path}")
-
-
-def _refuse_unused(law: LawChoice | None, given: dict[str, object], decimation: int | None) -> None:
+def _refuse_unused(
+    law: LawChoice | None, given: Mapping[str, object], decimation: int | None
+) -> None:
     """Refuse options that the way that was chosen does not use."""
     from breakaway.errors import LogError
 
     unused = [name for name, value in given.items() if value]
     if law is None and unused:
-        raise LogError(f"{', '.join(unused)}: need --law; without it a regression is made")
+        raise LogError(f"{', '.join(unused)}: only for --law; give --law, or leave them out")
     if law is not None and decimation is not None:
-        raise LogError("--decimation: belongs to the regression; leave it or --law out")
+        raise LogError("--decimation: only for the regression; leave out --decimation or --law")
 
 
 def _page(log: Path, out: Path | None) -> Path:
@@ -321,9 +210,9 @@ def _page(log: Path, out: Path | None) -> Path:
 
     page = Path(f"{log.stem}.html") if out is None else out.with_suffix(".html")
     if page == out:
-        raise OutputError(f"{out}: is where the report goes; give --out another suffix")
+        raise OutputError(f"{out}: the report goes there; give --out another suffix")
     if is_file(page) and not _is_report(page):
-        raise OutputError(f"{page}: is there and is no report; move it, or give another --out")
+        raise OutputError(f"{page}: exists and is not a report; move it, or give another --out")
     return page
 
 
@@ -355,22 +244,13 @@ def _controller(path: Path | None) -> Any:  # noqa: ANN401 - a Cascade or a Pid
 
 
 def _span(text: str, option: str) -> tuple[float, float]:
-    start, end = _pair(text.replace(":", "=", 1), option, "START:END")
+    start, end = pair(text.replace(":", "=", 1), option, "START:END")
     return _number(start, option), _number(end, option)
 
 
 def _fixed(pairs: list[str]) -> dict[str, float]:
-    named = (_pair(text, "--fix", "NAME=VALUE") for text in pairs)
+    named = (pair(text, "--fix", "NAME=VALUE") for text in pairs)
     return {name: _number(value, "--fix") for name, value in named}
-
-
-def _pair(text: str, option: str, form: str) -> tuple[str, str]:
-    from breakaway.errors import LogError
-
-    left, sign, right = text.partition("=")
-    if not (left and sign and right):
-        raise LogError(f"{option}: {text!r} is not of the form {form}")
-    return left, right
 
 
 def _number(text: str, option: str) -> float:
@@ -401,4 +281,4 @@ def _check_target(log: Path, out: Path) -> None:
         try:
             JointFile.load(out)
         except ScenarioError:
-            raise OutputError(f"{out}: is there and is no joint file; give another name") from None
+            raise OutputError(f"{out}: exists and is not a joint file; give another name") from None

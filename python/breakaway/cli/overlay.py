@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from breakaway.cli.quantity import show
-from breakaway.cli.show import Sheet
+from breakaway.cli.sheet import Sheet
 from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
 from breakaway.measure.identification.joint_file import JointFile

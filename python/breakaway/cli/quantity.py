@@ -89,12 +89,3 @@ def show_uncertain(value: float, error: float) -> tuple[str, str]:
         return f"{value:.6g}", f"{error:.2g}"
     shown = max(places, 0)
     return f"{round(value, places):.{shown}f}", f"{round(error, places):.{shown}f}"
-
-
-def memory_bytes(memory_gib: float | None) -> float | None:
-    """Return what ``--memory-gib`` says, in bytes.
-
-    >>> memory_bytes(2.0)
-    2147483648.0
-    """
-    return None if memory_gib is None else memory_gib * 2**30

@@ -9,7 +9,8 @@ import typer
 
 from breakaway.base.reading import is_there
 from breakaway.cli.progress import shown_progress
-from breakaway.cli.show import Sheet, say, say_aside
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import say, say_aside
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -18,18 +19,20 @@ if TYPE_CHECKING:
 
 def reproduce(
     out: Annotated[
-        Path, typer.Option(help="Folder for the report, its figures and tables.", metavar="DIR")
+        Path, typer.Option(help="Folder for report, figures and tables.", metavar="DIR")
     ] = Path("reproduction"),
     full: Annotated[
         bool,
-        typer.Option("--full", help="Figure 10 from 10,000 runs at each of 20 levels; minutes."),
+        typer.Option(
+            "--full", help="Figure 10 from 10,000 runs at each of 20 levels; takes minutes."
+        ),
     ] = False,
 ) -> None:
-    """Reproduce the paper's results, and tell where they differ from what it prints.
+    """Reproduce the paper's results, and say where they differ from the printed ones.
 
     The last line of the output is the path of the report. With --full, levels
-    of figure 10 are kept in DIR/figure_10 as they finish: after Ctrl-C the same
-    command goes on where it was.
+    of figure 10 are saved in DIR/figure_10 as they finish. After Ctrl-C the
+    same command continues there.
     """
     from breakaway.ask.reproduction.report import reproduce as reproduce_paper
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from breakaway.cli.options import Json, ScenarioName
 from breakaway.cli.quantity import show, show_value, split_unit
-from breakaway.cli.show import Sheet, busy, say, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import busy, say, say_json, say_written
 
 if TYPE_CHECKING:
     from breakaway.cli.overlay import Overlay
@@ -24,36 +25,38 @@ LIMIT_OF = {
 """Figure -> the limit of a scenario that judges it."""
 
 MEANING = {
-    "released": "the part is free, and no limit was exceeded",
+    "released": "the part is free and no limit was exceeded",
     "not_released": "time ran out before the part was free",
-    "diverged": "error or force passed its bound, or was not a number",
-    "limit_exceeded": "the part saw more than its limits allow",
+    "diverged": "error or force exceeded its bound, or was not a number",
+    "limit_exceeded": "the part exceeded a limit",
 }
 """Outcome -> what it says."""
 
 
 def run(
-    scenario: Annotated[str, typer.Argument(help="Name of a preset, or path of a TOML file.")],
+    scenario: ScenarioName,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for scenario, metrics, trace and figure.", metavar="DIR"),
+        typer.Option(
+            help="Folder for the results: scenario, metrics, trace, figure.", metavar="DIR"
+        ),
     ] = None,
     joint: Annotated[
         Path | None,
         typer.Option(
-            help="Joint file of `breakaway identify`, laid over the scenario.", metavar="FILE"
+            help="Joint file from `breakaway identify`, laid over the scenario.", metavar="FILE"
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Seed of all random draws, in place of the scenario's.")
+        int | None, typer.Option(help="Seed of all random draws. Left out: the scenario's.")
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    json: Json = False,
 ) -> None:
-    """Simulate one extraction and show its figures.
+    """Simulate one extraction and show its metrics.
 
-    With --out, the folder receives scenario.toml (every number explicit:
-    running it gives the same bits), metrics.json, trace.parquet, trace.csv,
-    figure.png and figure.svg; none of them where the run is interrupted.
+    With --out, the folder gets scenario.toml (with every number explicit, so
+    that it reruns to the same bits), metrics.json, trace.parquet, trace.csv,
+    figure.png and figure.svg. An interrupted run writes nothing.
     """
     from breakaway.model.scenario import load_scenario
 
@@ -79,8 +82,7 @@ def run(
     _show(finished)
     for note in _notes(finished, out):
         say(note)
-    for path in files:
-        say(f"wrote {path}")
+    say_written(files)
 
 
 def _simulate(scenario: Scenario, out: Path | None) -> tuple[Run, list[Path]]:
@@ -119,48 +121,12 @@ def _show(finished: Run) -> None:
 
 
 def _notes(finished: Run, out: Path | None) -> list[str]:
-    notes = [*_warnings(finished)]
+    notes = [*finished.warnings]
     if out is not None and not finished.trace:
         notes.append("no trace and no figure: trace.every_samples is 0")
     if out is None:
-        notes.append("--out DIR keeps trace, figure and the scenario that reruns this")
+        notes.append("--out DIR saves trace, figure and the scenario that reruns this")
     return notes
-
-
-def _warnings(finished: Run) -> Iterator[str]:
-    """What a user should know before trusting the figures."""
-    from breakaway.model.scenario import Gains, gain_sets
-
-    scenario, m = finished.scenario, finished.metrics
-    limits = scenario.limits
-    if finished.outcome == "diverged":
-        for name, value, field in (
-            ("largest_error_m", m.largest_error_m, "diverged_error_m"),
-            ("peak_force_n", m.peak_force_n, "diverged_force_n"),
-        ):
-            limit = getattr(limits, field)
-            if not value <= limit:
-                yield (
-                    f"diverged at {show('t_s', m.simulated_s)}: {split_unit(name)[0]} "
-                    f"{show(name, value)} is above limits.{field} = {show(name, limit)}"
-                )
-    presliding_m = scenario.joint.stiction_n / scenario.joint.stiffness_n_per_m
-    if limits.breakaway_travel_m is not None and limits.breakaway_travel_m <= presliding_m:
-        yield (
-            f"limits.breakaway_travel_m = {show('x_m', limits.breakaway_travel_m)} is within the "
-            f"presliding travel {show('x_m', presliding_m)}: a stuck joint counts as loose"
-        )
-    for which, gains in gain_sets(scenario.controller).items():
-        if isinstance(gains, Gains) and min(gains.kp_n_per_m, gains.kd_n_s_per_m) < 0.0:
-            yield (
-                f"controller.{which}: one is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
-                f"{gains.kd_n_s_per_m:.4g} N s/m; see `breakaway design`"
-            )
-    if scenario.joint.law == "lugre" and m.time_to_breakaway_s > 0 and m.peak_over_breakaway < 1:
-        yield (
-            f"the joint let go at {m.peak_over_breakaway:.2f} of stiction_n: LuGre friction creeps "
-            "under a rising force; compare with law = 'two_region' before sizing an actuator"
-        )
 
 
 def _show_json(finished: Run, files: list[Path], overlay: Overlay | None) -> None:

@@ -5,29 +5,22 @@ from __future__ import annotations
 import io
 import json
 import math
+import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
-from rich.cells import cell_len
 from rich.console import Console, RenderableType
-from rich.measure import Measurement
-from rich.table import Table
 from rich.text import Text
 
-from breakaway.base.text import terminal, visible, visible_lines
+from breakaway.base.text import terminal
+from breakaway.cli.sheet import PIPED_WIDTH, Sheet, narrowest
 from breakaway.cli.streams import told_failures
 
-PIPED_WIDTH = 10_000
-"""Width, in characters, for output that no terminal shows: lines are never broken there."""
 
-PROSE_WIDTH = 18
-"""Narrowest column of prose, in characters."""
-
-
-def say(*parts: RenderableType) -> None:
+def say(*parts: str | Sheet) -> None:
     """Print text or tables: whole values always, colors and line breaks only on a terminal.
 
     Strings are plain text, without markup; what a terminal would obey is shown as an escape.
@@ -47,12 +40,33 @@ def say(*parts: RenderableType) -> None:
     console = _Console(file=collected, highlight=False)
     available = console.width if sys.stdout.isatty() else PIPED_WIDTH
     for part in parts:
-        shown = Text(terminal(part)) if isinstance(part, str) else part
-        wide = console.options.update(width=PIPED_WIDTH)
-        # A terminal that is too narrow for the numbers breaks the lines by itself.
-        console.width = max(available, Measurement.get(console, wide, shown).minimum)
-        console.print(shown)
+        for shown in _pieces(part, available):
+            # A word that is wider than the terminal is broken by the terminal.
+            console.width = max(available, narrowest(shown))
+            console.print(shown)
     _write("\n".join(line.rstrip() for line in collected.getvalue().split("\n")))
+
+
+def _pieces(part: str | Sheet, width: int) -> Sequence[RenderableType]:
+    return [Text(terminal(part))] if isinstance(part, str) else part.fitted(width)
+
+
+def say_written(files: Sequence[Path]) -> None:
+    """Print which files were written: one line, however many they are.
+
+    Examples
+    --------
+    >>> say_written([Path("out/metrics.json")])
+    wrote out/metrics.json
+    >>> say_written([Path("out/metrics.json"), Path("out/trace.csv")])
+    wrote 2 files to out/: metrics.json, trace.csv
+
+    """
+    if len(files) == 1:
+        say(f"wrote {files[0]}")
+    elif files:
+        names = ", ".join(path.name for path in files)
+        say(f"wrote {len(files)} files to {files[0].parent}{os.sep}: {names}")
 
 
 def say_aside(sentence: str) -> None:
@@ -92,39 +106,6 @@ def plain(content: object) -> Any:  # noqa: ANN401 - any JSON
     if isinstance(content, Sequence) and not isinstance(content, str):
         return [plain(value) for value in content]
     return content
-
-
-class Sheet(Table):
-    """A table that breaks only its columns of prose, never a number or a name."""
-
-    def __init__(
-        self,
-        title: str,
-        columns: Sequence[str],
-        *,
-        numbers: Sequence[str] = (),
-        prose: Sequence[str] = (),
-    ) -> None:
-        heading = Text(visible(title), style="bold") if title else None
-        super().__init__(title=heading, box=SIMPLE_HEAD, title_justify="left")
-        for name in columns:
-            shown = Text(visible(name))
-            self.add_column(
-                shown,
-                justify="right" if name in numbers else "left",
-                no_wrap=name not in prose,
-                overflow="fold",
-                min_width=PROSE_WIDTH if name in prose else cell_len(shown.plain),
-            )
-
-    def add(self, *cells: str) -> None:
-        """Add a row of plain text."""
-        texts = [visible_lines(cell) for cell in cells]
-        for column, cell in zip(self.columns, texts, strict=True):
-            if column.no_wrap:
-                widest = max(cell_len(line) for line in cell.split("\n"))
-                column.min_width = max(column.min_width or 0, widest)
-        self.add_row(*map(Text, texts))
 
 
 @contextmanager

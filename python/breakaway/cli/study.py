@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
+from breakaway.cli.options import Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
-from breakaway.cli.show import Sheet, say, say_aside, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import say, say_aside, say_json, say_written
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -26,25 +28,22 @@ OUTCOMES = ("released", "not_released", "limit_exceeded", "diverged")
 def study(
     file: Annotated[Path, typer.Argument(help="TOML file of the study.", metavar="STUDY.toml")],
     out: Annotated[
-        Path, typer.Option(help="Folder for pieces, summary, tables and figures.", metavar="DIR")
+        Path, typer.Option(help="Folder for the results: summary, tables, figures.", metavar="DIR")
     ],
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a study that DIR holds.")
-    ] = False,
-    threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the study in DIR.")] = False,
+    threads: Threads = None,
+    json: Json = False,
 ) -> None:
     """Run many simulations that answer one question.
 
-    The kind of study is a sweep, robustness, sensitivity, compare, or agreement
-    of friction laws.
+    There are five kinds: sweep, robustness, sensitivity, compare, and
+    agreement (between friction laws). `breakaway init --kind` writes a file
+    to start from.
 
-    The folder receives manifest.json first, then the runs in pieces as they
-    finish (Parquet), and in the end summary.json, tables (CSV), figures, and
-    study.toml, which holds all it takes to run it again. A study that was
-    interrupted or killed goes on with --resume and computes nothing twice.
+    Runs are saved as they finish (Parquet). At the end the folder also holds
+    summary.json, tables (CSV), figures, and study.toml, which is all it takes
+    to run the study again. An interrupted or killed study continues with
+    --resume and computes nothing twice.
     """
     from breakaway.ask.durable.journal import PIECES
     from breakaway.ask.studies import load_study, run_study
@@ -76,8 +75,7 @@ def study(
     for note in summary["notes"]:
         say(f"note: {note}")
     say(f"wrote {len(done.piece_files)} pieces to {out / PIECES}")
-    for path in files:
-        say(f"wrote {path}")
+    say_written(files)
 
 
 def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
@@ -98,7 +96,7 @@ def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
     for name, rows in tables.items():
         sheet = make[name](rows)
         shown.append(sheet)
-        if sheet.row_count == ROWS_MAX:
+        if len(sheet.rows) == ROWS_MAX:
             shown.append(f"the first {ROWS_MAX} rows; {name}.csv has all")
     return shown
 
@@ -106,7 +104,7 @@ def _tables(done: StudyResult, summary: Mapping[str, Any]) -> list[Sheet | str]:
 def _points(rows: Sequence[Mapping[str, Any]], labels: list[str], metrics: Sequence[str]) -> Sheet:
     seen = [name for name in OUTCOMES if any(row[name] for row in rows)]
     columns = [*labels, "runs", *seen, *(f"{split_unit(name)[0]}: median" for name in metrics)]
-    sheet = Sheet("", columns, numbers=columns)
+    sheet = Sheet("", columns, numbers=columns, labels=len(labels))
     for row in rows[:ROWS_MAX]:
         sheet.add(
             *(_level(row[name]) for name in labels),
@@ -177,7 +175,7 @@ def _differences(rows: Sequence[Mapping[str, Any]], metrics: Sequence[str]) -> S
 def _conclusions(rows: Sequence[Mapping[str, Any]]) -> Sheet:
     parts = [name for name in rows[0] if name.startswith("verdict_")]
     words = [name.removeprefix("verdict_").replace("_", " ") for name in parts]
-    sheet = Sheet("", ["of", "than", "quantity", "goes", "verdict", *words])
+    sheet = Sheet("", ["of", "than", "quantity", "goes", "verdict", *words], labels=3)
     for row in rows[:ROWS_MAX]:
         sheet.add(
             row["other"],

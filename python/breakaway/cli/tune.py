@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
+from breakaway.cli.options import Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
-from breakaway.cli.show import Sheet, say, say_aside, say_json
+from breakaway.cli.sheet import Sheet
+from breakaway.cli.show import say, say_aside, say_json, say_written
 from breakaway.errors import OutputError
 
 if TYPE_CHECKING:
@@ -23,26 +25,21 @@ if TYPE_CHECKING:
 def tune(
     file: Annotated[Path, typer.Argument(help="TOML file of the tuning.", metavar="TUNING.toml")],
     out: Annotated[
-        Path,
-        typer.Option(help="Folder for evaluations, methods, tables and figures.", metavar="DIR"),
+        Path, typer.Option(help="Folder for the results: methods, tables, figures.", metavar="DIR")
     ],
     evaluations: Annotated[
-        int | None, typer.Option(min=1, help="Methods to try. Left out: as the file says.")
+        int | None, typer.Option(min=1, help="How many methods to try. Left out: as in the file.")
     ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with the tuning that DIR holds.")
-    ] = False,
-    threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the tuning in DIR.")] = False,
+    threads: Threads = None,
+    json: Json = False,
 ) -> None:
     """Tune a method on parts of a population, and score it on parts that tuning never saw.
 
-    The folder receives manifest.json first, then each evaluation as it finishes,
-    and in the end summary.json, best.toml (the recommended method, complete), a file
-    for each point of the front, tables (CSV) and figures. A tuning that was
-    interrupted or killed goes on with --resume, also with more --evaluations.
+    Each evaluation is saved as it finishes. At the end the folder also holds
+    summary.json, best.toml (the recommended method, complete), a file for each
+    point of the front, tables (CSV) and figures. An interrupted or killed
+    tuning continues with --resume, also with more --evaluations.
     """
     from breakaway.ask.tuning import load_tuning
     from breakaway.ask.tuning import tune as run_tuning
@@ -80,8 +77,7 @@ def tune(
         say(sentence)
     for note in summary["notes"]:
         say(f"note: {note}")
-    for path in files:
-        say(f"wrote {path}")
+    say_written(files)
 
 
 def _told(progress: Callable[[Progress], None]) -> Callable[[TuningProgress], None]:

@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.pole_placement import check_positive
 from breakaway.errors import ScenarioError
 
@@ -61,6 +62,7 @@ def describing_function(
     (1.0, 0.0)
 
     """
+    check_arguments(describing_function, locals(), ScenarioError)
     check_positive(amplitude=amplitude)
     if points < 8:
         raise ScenarioError(f"points: {points!r} is not >= 8; give a whole number >= 8")

@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.describing_function import POINTS, harmonic, midpoints
 from breakaway.design.loop import SampledPid
 from breakaway.design.pole_placement import check_positive, with_residual
@@ -111,6 +112,7 @@ def limit_cycles(
     (292, 0.062, True)
 
     """
+    check_arguments(limit_cycles, locals(), ScenarioError)
     check_positive(speed_m_per_s=speed_m_per_s)
     if harmonics not in range(1, HARMONICS_MAX + 1):
         raise ScenarioError(

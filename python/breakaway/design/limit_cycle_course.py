@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from breakaway.base.arguments import check_arguments, column_of
 from breakaway.base.equality import ByValue
 from breakaway.design.limit_cycle import Oscillator, oscillator_of
 from breakaway.design.loop import SampledPid
@@ -162,9 +163,11 @@ def compare_limit_cycle(
     ('agree: oscillation', True)
 
     """
-    columns = (t_s, reference_m, velocity_m_per_s)
-    t, r, v = (np.asarray(column, dtype=np.float64) for column in columns)
-    if not (t.ndim == 1 and t.shape == r.shape == v.shape and t.size >= 16):
+    check_arguments(compare_limit_cycle, locals(), ScenarioError)
+    t = column_of("t_s", t_s, ScenarioError)
+    r = column_of("reference_m", reference_m, ScenarioError)
+    v = column_of("velocity_m_per_s", velocity_m_per_s, ScenarioError)
+    if not (t.shape == r.shape == v.shape and t.size >= 16):
         raise ScenarioError(
             f"t_s, reference_m, velocity_m_per_s: shapes {t.shape}, {r.shape}, {v.shape} are not "
             "one column of at least 16 rows each; give three columns of one trace"
@@ -198,6 +201,11 @@ def measured_cycles(t_s: ArrayLike, velocity_m_per_s: ArrayLike, mean_m_per_s: A
     -------
     Cycles
 
+    Raises
+    ------
+    ScenarioError
+        The columns are no lists of numbers, or differ in length.
+
     Examples
     --------
     >>> import numpy as np
@@ -207,8 +215,15 @@ def measured_cycles(t_s: ArrayLike, velocity_m_per_s: ArrayLike, mean_m_per_s: A
     (array([7.96, 7.96]), array([0.1, 0.1]))
 
     """
-    t, mean = np.asarray(t_s, dtype=np.float64), np.asarray(mean_m_per_s, dtype=np.float64)
-    d = np.asarray(velocity_m_per_s, dtype=np.float64) - mean
+    t = column_of("t_s", t_s, ScenarioError)
+    v = column_of("velocity_m_per_s", velocity_m_per_s, ScenarioError)
+    mean = column_of("mean_m_per_s", mean_m_per_s, ScenarioError)
+    if not t.shape == v.shape == mean.shape:
+        raise ScenarioError(
+            f"t_s, velocity_m_per_s, mean_m_per_s: {t.size}, {v.size} and {mean.size} rows are not "
+            "equally many; give three columns of one trace"
+        )
+    d = v - mean
     up = np.flatnonzero((d[:-1] < 0.0) & (d[1:] >= 0.0))
     at = t[up] - d[up] * (t[up + 1] - t[up]) / (d[up + 1] - d[up])
     rows = []

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
+from breakaway.base.text import shown
 from breakaway.design.pole_placement import PidGains, check_positive
 from breakaway.errors import ScenarioError
 from breakaway.model.friction.curve import has_bristles, steady_friction, stribeck_slope
@@ -43,6 +45,7 @@ class SampledPid:
     """tau_f, in s, of the first-order filter on the derivative; 0 for none."""
 
     def __post_init__(self) -> None:
+        check_arguments(SampledPid.__init__, vars(self), ScenarioError)
         check_positive(period_s=self.period_s)
         gains = self.gains
         for name, value in (("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)):
@@ -99,6 +102,7 @@ def stuck_plant(joint: AnyJoint, mass_kg: float) -> control.StateSpace:
     array([-4500., -4500.])
 
     """
+    check_arguments(stuck_plant, locals(), ScenarioError)
     check_positive(mass_kg=mass_kg)
     if not has_bristles(joint):
         raise ScenarioError(
@@ -152,6 +156,7 @@ def sliding_plant(
     True
 
     """
+    check_arguments(sliding_plant, locals(), ScenarioError)
     check_positive(mass_kg=mass_kg)
     m = mass_kg
     if velocity_m_per_s is None:
@@ -209,11 +214,21 @@ def open_loop(pid: SampledPid, plant: control.StateSpace) -> control.StateSpace:
     True
 
     """
+    check_arguments(open_loop, locals(), ScenarioError)
     import control
 
+    check_system("plant", plant, "stuck_plant and sliding_plant give one")
     sampled = control.c2d(plant, pid.period_s, method="zoh")
     loop = control.series(sampled, _controller(pid))
     return control.series(loop, _delay(pid)) if pid.delay_samples else loop
+
+
+def check_system(name: str, value: object, remedy: str) -> None:
+    """Refuse what is no linear system of python-control."""
+    import control
+
+    if not isinstance(value, control.StateSpace | control.TransferFunction):
+        raise ScenarioError(f"{name}: {shown(value)} is not a control.StateSpace; {remedy}")
 
 
 def _plant(dynamics: list[list[float]], mass_kg: float) -> control.StateSpace:

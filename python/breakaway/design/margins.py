@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.design.loop import check_system
 from breakaway.errors import ScenarioError
 
 if TYPE_CHECKING:
@@ -102,6 +103,7 @@ def margins(loop: control.StateSpace) -> Margins:
     """
     import control
 
+    check_system("loop", loop, "open_loop gives one")
     if not (loop.issiso() and loop.isdtime(strict=True)):
         raise ScenarioError(
             f"loop: has {loop.ninputs} inputs, {loop.noutputs} outputs and dt = {loop.dt}; give a "

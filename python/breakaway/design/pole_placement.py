@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import ScenarioError
 from breakaway.model.friction.curve import has_bristles
 from breakaway.model.scenario.joint import AnyJoint
@@ -23,6 +24,9 @@ class PidGains:
     """Integral gain, in N/(m s)."""
     kd: float
     """Derivative gain, in N s/m."""
+
+    def __post_init__(self) -> None:
+        check_arguments(PidGains.__init__, vars(self), ScenarioError)
 
 
 @dataclass(frozen=True)
@@ -110,6 +114,7 @@ def pole_placement(
     3137.3
 
     """
+    check_arguments(pole_placement, locals(), ScenarioError)
     check_positive(
         mass_kg=mass_kg,
         settling_time_s=settling_time_s,

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.loop import SampledPid, open_loop, sliding_plant, stuck_plant
 from breakaway.design.margins import Margins, margins
 from breakaway.design.pole_placement import PidGains
 from breakaway.design.stability import LoopStability
+from breakaway.errors import ScenarioError
 from breakaway.model.friction.curve import has_bristles, steepest_fall_velocity, stribeck_slope
 from breakaway.model.scenario.controller import PidSettings
 from breakaway.model.scenario.joint import AnyJoint
@@ -72,6 +74,7 @@ def sampled_pid(gains: PidGains, settings: PidSettings, timing: Timing) -> Sampl
     (1e-05, 0)
 
     """
+    check_arguments(sampled_pid, locals(), ScenarioError)
     return SampledPid(
         gains,
         period_s=timing.control_period_s,
@@ -123,6 +126,7 @@ def sampled_loops(
     sliding, falling friction False
 
     """
+    check_arguments(sampled_loops, locals(), ScenarioError)
     loops = []
     if has_bristles(joint):
         loops.append(_loop("stuck", pid, stuck_plant(joint, mass_kg)))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.pole_placement import PidGains, check_positive
 from breakaway.errors import ScenarioError
 from breakaway.model.friction.curve import (
@@ -71,6 +72,7 @@ def stability(gains: PidGains, joint: AnyJoint, mass_kg: float) -> Stability:
     (True, False)
 
     """
+    check_arguments(stability, locals(), ScenarioError)
     check_positive(mass_kg=mass_kg)
     stuck = None
     if has_bristles(joint):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from json import dumps
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from breakaway import _core
+from breakaway.base.arguments import check_arguments
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import C_SOURCES
 from breakaway.errors import ScenarioError
@@ -89,8 +89,7 @@ def export_c(
     ['CMakeLists.txt', 'README.md', 'controller.c', 'controller.h']
 
     """
-    check_choice("what", what, TITLES)
-    check_choice("real", real, ("double", "float"))
+    check_arguments(export_c, locals(), ScenarioError)
     recording = record(resolve(scenario), what, real)
     folder = Path(out)
     texts = c_texts(recording)
@@ -98,12 +97,6 @@ def export_c(
         for name, text in texts.items():
             (staging / name).write_text(text, encoding="utf-8", newline="\n")
     return ExportedC(what, real, tuple(folder / name for name in sorted(texts)))
-
-
-def check_choice(name: str, value: str, known: Collection[str]) -> None:
-    """Refuse a choice that is not known."""
-    if value not in known:
-        raise ScenarioError(f"{name}: {value!r} is not one of {', '.join(map(repr, known))}")
 
 
 def c_texts(recording: Recording) -> dict[str, str]:

@@ -10,14 +10,15 @@ import zipfile
 from dataclasses import dataclass
 from math import isinf
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from breakaway import _core
+from breakaway.base.arguments import check_arguments, check_choice
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import is_folder
 from breakaway.base.text import c_identifier
 from breakaway.errors import OutputError, ScenarioError
-from breakaway.export.c_files import TITLES, c_texts, check_choice, draws
+from breakaway.export.c_files import TITLES, c_texts, draws
 from breakaway.export.fmi_absent import absent
 from breakaway.export.fmu_build import build
 from breakaway.export.interface import Variable, What
@@ -114,8 +115,8 @@ def export_fmu(
     ('loop.fmu', '3')
 
     """
-    check_choice("what", what, TITLES)
-    check_choice("fmi", str(fmi), ("2", "3"))
+    check_arguments(export_fmu, locals(), ScenarioError)
+    check_choice("fmi", str(fmi), get_args(Fmi), ScenarioError)
     version: Fmi = "2" if str(fmi) == "2" else "3"
     path = Path(out)
     if is_folder(path):

@@ -6,15 +6,18 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.base.equality import ByValue
+from breakaway.base.extras import pandas
+from breakaway.base.one_line import OneLine, counted
 from breakaway.errors import ScenarioError
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.model.units import unit_of
+from breakaway.run.warnings import warnings_of
 
 if TYPE_CHECKING:
     import xarray
@@ -108,7 +111,7 @@ class RunMetrics(ByValue):
 
 
 @dataclass(frozen=True, eq=False)
-class Run(ByValue):
+class Run(OneLine, ByValue):
     """A finished run: outcome, figures, trace, and the resolved scenario that reruns it."""
 
     outcome: Outcome
@@ -131,6 +134,29 @@ class Run(ByValue):
     run_index: int
     """Its number among the runs of that seed."""
 
+    def __repr__(self) -> str:
+        m, said = self.metrics, [f"{self.outcome}", f"peak force {self.metrics.peak_force_n:.5g} N"]
+        if isfinite(m.time_to_release_s):
+            said.append(f"free after {m.time_to_release_s:.5g} s")
+        if self.warnings:
+            said.append(counted(len(self.warnings), "warning"))
+        return f"<run of {self.scenario.name!r}: {', '.join(said)}>"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What has to be known before its figures are trusted, one sentence each.
+
+        Examples
+        --------
+        >>> import breakaway as bk
+        >>> scenario = bk.load_scenario("paper_as_computed")
+        >>> wild = bk.simulate(scenario.with_({"limits.diverged_force_n": 400.0}))
+        >>> wild.warnings[0].partition(": ")[2]
+        'peak force 411.03 N is above limits.diverged_force_n = 400 N'
+
+        """
+        return tuple(warnings_of(self.scenario, self.outcome, self.metrics))
+
     def to_xarray(self) -> xarray.Dataset:
         """Give the trace as a dataset over ``t_s``, with units, and outcome and seed as attributes.
 
@@ -149,8 +175,7 @@ class Run(ByValue):
         """
         import xarray
 
-        if not self.trace:
-            raise ScenarioError("trace.every_samples: is 0, so there is no trace; give 1 or more")
+        self._refuse_no_trace()
         data = {
             name: ("t_s", values, {"units": unit_of(name).symbol})
             for name, values in self.trace.items()
@@ -164,6 +189,31 @@ class Run(ByValue):
         }
         time = ("t_s", self.trace["t_s"], {"units": "s"})
         return xarray.Dataset(data, coords={"t_s": time}, attrs=attributes)
+
+    def to_pandas(self) -> Any:  # noqa: ANN401 - pandas is optional
+        """Give the trace as a pandas DataFrame, by ``t_s``.
+
+        Raises
+        ------
+        ScenarioError
+            The run has no trace.
+        StudyError
+            pandas is not installed.
+
+        Examples
+        --------
+        >>> import breakaway as bk
+        >>> frame = bk.simulate(bk.load_scenario("paper_as_computed")).to_pandas()
+        >>> frame.index.name, f"{frame.applied_force_n.max():.1f}"
+        ('t_s', '601.4')
+
+        """
+        self._refuse_no_trace()
+        return pandas().DataFrame(dict(self.trace)).set_index("t_s")
+
+    def _refuse_no_trace(self) -> None:
+        if not self.trace:
+            raise ScenarioError("trace.every_samples: is 0, so there is no trace; give 1 or more")
 
     def plot(self) -> Figure:
         """Draw position, error and forces over time."""

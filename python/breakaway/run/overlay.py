@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from breakaway.base.text import shown
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import ScenarioError
 from breakaway.measure.identification.joint_file import JointFile
 from breakaway.measure.identification.result import Identification
 from breakaway.model.scenario.laws import laws_with
 from breakaway.model.scenario.scenario import Scenario
-from breakaway.run.resolution import check_scenario
 
 
 def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path) -> Scenario:
@@ -54,17 +53,12 @@ def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path)
     (60, 450.0, 4)
 
     """
-    check_scenario(scenario)
+    check_arguments(lay_over, locals(), ScenarioError)
     if isinstance(joint, str | Path):
         return lay_file_over(scenario, JointFile.load(joint), str(joint))
     if isinstance(joint, Identification):
         return lay_file_over(scenario, JointFile.from_identification(joint), "identification")
-    if isinstance(joint, JointFile):
-        return lay_file_over(scenario, joint, "joint file")
-    raise ScenarioError(
-        f"joint: {shown(joint)} is not a joint; give a JointFile, an Identification, or the path "
-        "of a joint file"
-    )
+    return lay_file_over(scenario, joint, "joint file")
 
 
 def lay_file_over(scenario: Scenario, joint: JointFile, name: str) -> Scenario:

@@ -7,7 +7,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
 from breakaway.design.pole_placement import pole_placement, with_residual
+from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import ForceActuator
 from breakaway.model.scenario.controller import (
     AnyController,
@@ -18,7 +20,6 @@ from breakaway.model.scenario.controller import (
     TwoStep,
 )
 from breakaway.model.scenario.core_joint import leave_out_zero, nested_joint
-from breakaway.model.scenario.given import check_scenario
 from breakaway.model.scenario.joint import AnyJoint
 from breakaway.model.scenario.model import Model
 from breakaway.model.scenario.scenario import Scenario
@@ -49,7 +50,7 @@ def resolve(scenario: Scenario) -> Scenario:
     'given'
 
     """
-    check_scenario(scenario)
+    check_arguments(resolve, locals(), ScenarioError)
     joint, limits = scenario.joint, scenario.limits
     explicit_limits = limits.model_copy(
         update={

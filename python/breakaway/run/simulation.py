@@ -7,7 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from breakaway import _core
-from breakaway.base.arguments import check_whole
+from breakaway.base.arguments import check_arguments, check_whole
 from breakaway.errors import ScenarioError
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.finished import Outcome, Run, RunMetrics
@@ -44,6 +44,7 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
     ('released', '3.0361e-06', '601.4')
 
     """
+    check_arguments(simulate, locals(), ScenarioError)
     check_whole("run_index", run_index, ScenarioError, 0, 2**64 - 1)
     resolved = resolve(scenario)
     outcome, figures, columns = _core.run_one(core_job(resolved, run_index))

@@ -11,6 +11,7 @@ import tomli_w
 from pydantic import Field, model_validator
 
 from breakaway.ask.studies.base import StudyModel
+from breakaway.base.arguments import run_numbers
 from breakaway.base.reading import read_toml
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
@@ -125,12 +126,8 @@ def _counted(runs: int | range | None) -> dict[str, Any]:
     """Give a range of part numbers as a first one and how many; a number stays as it is."""
     if not isinstance(runs, range):
         return {"runs": runs}
-    if not runs or runs.step != 1:
-        raise StudyError(
-            f"runs: {runs!r} is not a range of one part or more that leaves none out; give a range "
-            "such as range(1000, 1500), or a number"
-        )
-    return {"first": runs.start, "runs": len(runs)}
+    numbers = run_numbers(runs)
+    return {"first": numbers.start, "runs": len(numbers)}
 
 
 def _listed(given: Sequence[AnyName] | AnyName | None) -> list[AnyName] | None:

@@ -20,13 +20,15 @@ from breakaway.ask.comparison.trial_pieces import (
     read_trial,
     trial_as_bytes,
 )
-from breakaway.ask.durable.arguments import as_folder, check_options
 from breakaway.ask.durable.journal import Journal
 from breakaway.ask.durable.progress import Progress
 from breakaway.ask.durable.resume import prepared
 from breakaway.ask.durable.runner import Runner
 from breakaway.ask.studies.plan import Row
+from breakaway.base.arguments import check_arguments
 from breakaway.base.equality import ByValue
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
@@ -38,7 +40,7 @@ DRAWING = "figures and page"
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison(ByValue):
+class Comparison(OneLine, ByValue):
     """A finished comparison: what each method did to the same parts, and what that shows."""
 
     asked: Asked
@@ -53,6 +55,12 @@ class Comparison(ByValue):
     """What has to be known before they are trusted."""
     folder: Path | None
     """Where it is; None where it was not written."""
+
+    def __repr__(self) -> str:
+        asked = self.asked
+        methods, laws = counted(len(asked.names), "method"), counted(len(asked.laws), "law")
+        parts = counted(asked.runs, "part")
+        return f"<comparison on {asked.population.name!r}: {methods}, {laws}, {parts} each>"
 
     def row(self, law: str, method: str) -> Row:
         """Give the row of a method under a law.
@@ -154,9 +162,10 @@ def compare_methods(
     4
 
     """
+    check_arguments(compare_methods, locals(), StudyError)
+    thread_count(threads)
     asked = ask(population, methods, laws=laws, runs=runs, seed=seed, baselines=baselines)
-    check_options(resume=resume, threads=threads, progress=progress, notice=notice)
-    folder = None if out is None else as_folder("out", out)
+    folder = None if out is None else Path(out)
     with _held(folder, asked, resume=resume) as journal:
         runner = Runner(
             journal,

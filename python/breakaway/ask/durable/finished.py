@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
-from breakaway.ask.durable.arguments import as_folder
 from breakaway.ask.durable.journal import PIECES, Journal
 from breakaway.ask.durable.manifest import Checked, Kind, manifest_of_kind
 from breakaway.ask.durable.pieces import pieces_in
+from breakaway.base.arguments import check_arguments
 from breakaway.base.reading import is_file, read_json
 from breakaway.errors import StudyError
 
@@ -26,7 +26,8 @@ class DurableFolder(ABC):
     _manifest_model: ClassVar[type[Checked]] = Checked
 
     def __init__(self, folder: str | Path) -> None:
-        self.folder = as_folder("folder", folder, StudyError)
+        check_arguments(DurableFolder.__init__, locals(), StudyError)
+        self.folder = Path(folder)
         """Where it is."""
         self.manifest: Mapping[str, Any] = manifest_of_kind(
             self.folder, self._kind, self._manifest_model

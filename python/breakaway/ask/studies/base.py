@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Mapping
 from dataclasses import fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
@@ -28,6 +28,10 @@ HEADLINES = ("peak_force_n", "largest_jump_m", "time_to_release_s")
 """Metrics that are shown where a study does not say which."""
 
 Share = Annotated[float, Field(gt=0.0, lt=1.0)]
+
+Value = TypeVar("Value")
+ByPath = dict[str, Value | dict[str, Any]]
+"""How values by dotted path stand in a file: by quoted paths, or in tables within tables."""
 
 
 class StudyModel(Model):
@@ -98,10 +102,13 @@ class StudyBase(StudyModel):
     """A name for tables and figures."""
     description: Text = ""
     """What the study is for."""
-    scenario: Annotated[Scenario, BeforeValidator(loaded)]
+    scenario: Annotated[Scenario, BeforeValidator(loaded, json_schema_input_type=Scenario | str)]
     """The scenario: the name of a preset, the path of a file (from the study's own folder), or
     its tables."""
-    joint: Annotated[JointFile, BeforeValidator(_loaded_joint)] | None = None
+    joint: (
+        Annotated[JointFile, BeforeValidator(_loaded_joint, json_schema_input_type=JointFile | str)]
+        | None
+    ) = None
     """A joint that was identified from a log: the path of its file (from the study's own folder).
     Its values are laid over the scenario, and its draws join what differs from part to part."""
     changes: Changes = Field(default_factory=dict)
@@ -117,9 +124,10 @@ class StudyBase(StudyModel):
     """Metrics that are recorded. Left out: all; tables and figures show the main ones."""
     design: Literal["random", "sobol", "latin_hypercube"] = "random"
     """How the values of what varies are spread."""
-    vary: Annotated[dict[str, Distribution], BeforeValidator(varied_numbers)] = Field(
-        default_factory=dict
-    )
+    vary: Annotated[
+        dict[str, Distribution],
+        BeforeValidator(varied_numbers, json_schema_input_type=ByPath[Distribution]),
+    ] = Field(default_factory=dict)
     """What differs from part to part: a distribution by dotted path."""
     runs_per_piece: Annotated[int, Field(ge=1, le=1_000_000)] = 8192
     """Runs that are written together. A study that is killed loses the piece that it was at."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from breakaway.ask.studies.study import KINDS, Study
+from breakaway.base.arguments import check_arguments
 from breakaway.base.reading import is_there, table_of, text_of
 from breakaway.base.text import shown
 from breakaway.errors import ScenarioError, StudyError
@@ -56,7 +57,9 @@ def load_study(path: str | Path) -> Study:
     return load_table(path, "study", lambda values, at: parse_study(_from_folder(values, at)))
 
 
-def load_table(path: object, what: str, build: Callable[[dict[str, Any], Path], Built]) -> Built:
+def load_table(
+    path: str | Path, what: str, build: Callable[[dict[str, Any], Path], Built]
+) -> Built:
     """Build what a TOML file describes from its values and its folder; errors name the file.
 
     Raises
@@ -65,8 +68,7 @@ def load_table(path: object, what: str, build: Callable[[dict[str, Any], Path], 
         There is no such file, it is not TOML, or what it describes can not be built.
 
     """
-    if not isinstance(path, str | Path):
-        raise StudyError(f"path: {shown(path)} is not a path; give the path of a {what}")
+    check_arguments(load_table, locals(), StudyError)
     file = Path(path)
     missing = f"there is no such file; give the path of a {what}"
     values = table_of(text_of(file, StudyError, missing), file, StudyError)

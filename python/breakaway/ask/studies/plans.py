@@ -16,7 +16,6 @@ from breakaway.ask.studies.study import (
     SweepStudy,
 )
 from breakaway.ask.studies.sweep import SweepPlan
-from breakaway.errors import StudyError
 
 
 def plan_of(study: Study) -> Plan:
@@ -39,4 +38,3 @@ def plan_of(study: Study) -> Plan:
             return ComparePlan(study)
         case AgreementStudy():
             return AgreementPlan(study)
-    raise StudyError(f"study: {type(study).__name__} is not a study; load one with load_study")

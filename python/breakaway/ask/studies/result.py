@@ -18,6 +18,7 @@ from breakaway.ask.studies.manifest import StudyManifest
 from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.run_pieces import piece_schema
 from breakaway.ask.studies.study import Study
+from breakaway.base.one_line import OneLine
 from breakaway.base.reading import is_there
 from breakaway.errors import StudyError
 from breakaway.run.batch.batch import as_pandas
@@ -25,7 +26,7 @@ from breakaway.run.batch.columns import at_run, with_nominal_controller
 from breakaway.run.finished import Run
 
 
-class StudyResult(DurableFolder):
+class StudyResult(OneLine, DurableFolder):
     """A study in a folder, finished or not. Runs are read when they are asked for."""
 
     _kind = STUDY

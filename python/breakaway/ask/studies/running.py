@@ -9,7 +9,6 @@ from typing import Any
 import tomli_w
 
 from breakaway._core import __version__
-from breakaway.ask.durable.arguments import as_folder, check_options
 from breakaway.ask.durable.documents import as_csv, as_json
 from breakaway.ask.durable.finished import SUMMARY
 from breakaway.ask.durable.journal import Journal
@@ -23,8 +22,11 @@ from breakaway.ask.studies.points import Point
 from breakaway.ask.studies.result import StudyResult, open_study
 from breakaway.ask.studies.run_pieces import RunPieces, Stretch, label_types, laid_out
 from breakaway.ask.studies.study import Study
+from breakaway.base.arguments import check_arguments
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
+from breakaway.base.threads import thread_count
+from breakaway.errors import StudyError
 from breakaway.run.batch.batch import Batch
 
 
@@ -88,8 +90,9 @@ def run_study(
     ['0 of 20 runs released, at 1 point of 20 each']
 
     """
-    check_options(resume=resume, threads=threads, progress=progress, notice=notice)
-    folder = as_folder("out", out)
+    check_arguments(run_study, locals(), StudyError)
+    thread_count(threads)
+    folder = Path(out)
     plan = plan_of(study)
     for point in plan.points:
         point.check()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, TypeAdapter, model_validator
 
 from breakaway.ask.studies.agreement_study import AgreementStudy
 from breakaway.ask.studies.base import (
+    ByPath,
     Changes,
     LevelsTable,
     Share,
@@ -35,9 +36,10 @@ FAILURES: tuple[Failure, ...] = ("diverged", "not_released", "limit_exceeded")
 class SweepTable(StudyModel):
     """What a sweep goes through."""
 
-    grid: Annotated[dict[str, list[Level]], BeforeValidator(grid_levels)] = Field(
-        default_factory=dict
-    )
+    grid: Annotated[
+        dict[str, list[Level]],
+        BeforeValidator(grid_levels, json_schema_input_type=ByPath[list[Level]]),
+    ] = Field(default_factory=dict)
     """Values by dotted path, as a list or as {from, to, count, spacing = "linear" | "log"}; every
     combination is a point. Left out: one point."""
     confidence: Share = 0.95
@@ -232,7 +234,9 @@ class ComparedController(StudyModel):
 
     name: Name
     """A name for tables and figures."""
-    scenario: Annotated[Scenario, BeforeValidator(loaded)] | None = None
+    scenario: (
+        Annotated[Scenario, BeforeValidator(loaded, json_schema_input_type=Scenario | str)] | None
+    ) = None
     """A scenario whose controller and actuator are taken; gains that it leaves open are designed
     for the study's scenario. Left out: those of the study's scenario."""
     changes: Changes = Field(default_factory=dict)
@@ -338,3 +342,16 @@ KINDS: dict[str, type[Study]] = {
     "agreement": AgreementStudy,
 }
 """Kind of a study -> its model."""
+
+
+def study_schema() -> dict[str, Any]:
+    """The JSON Schema of a study of any kind, as it stands in a file.
+
+    Examples
+    --------
+    >>> sorted(study_schema()["discriminator"]["mapping"]) == sorted(KINDS)
+    True
+
+    """
+    any_kind: TypeAdapter[Study] = TypeAdapter(Annotated[Study, Field(discriminator="kind")])
+    return any_kind.json_schema()

@@ -49,7 +49,7 @@ def check_number(method: Method, path: str, values: Mapping[str, float]) -> None
     owner, name = _owner(method, path)
     field = type(owner).model_fields[name]
     allowed: TypeAdapter[float] = TypeAdapter(
-        Annotated[(field.annotation, *field.metadata)]  # type: ignore[arg-type]
+        Annotated[(field.annotation, field, *field.metadata)]  # type: ignore[arg-type]
     )
     for key, value in values.items():
         try:

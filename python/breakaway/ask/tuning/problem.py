@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from breakaway.ask.studies.base import StudyModel
+from breakaway.ask.studies.base import ByPath, StudyModel
 from breakaway.ask.tuning.numbers import check_number, number_of, with_numbers
 from breakaway.ask.tuning.scores import PIEZO_METRICS, SHARES, ScoreKind, score_kind
 from breakaway.base.text import LONGEST_NAME, shown
@@ -161,10 +161,12 @@ class Tuning(StudyModel):
     """A name for tables and figures."""
     description: Text = ""
     """What the tuning is for."""
-    population: Annotated[PartPopulation, BeforeValidator(_population)]
+    population: Annotated[
+        PartPopulation, BeforeValidator(_population, json_schema_input_type=PartPopulation | str)
+    ]
     """The parts: the name of a preset, the path of a file (from the tuning's own folder), or its
     tables."""
-    method: Annotated[Method, BeforeValidator(_method)]
+    method: Annotated[Method, BeforeValidator(_method, json_schema_input_type=Method | str)]
     """What is tuned: the name of a preset, the path of a file (from the tuning's own folder), or
     its tables."""
     laws: Annotated[list[Law], Field(min_length=1)] = Field(default_factory=_lugre)
@@ -176,7 +178,9 @@ class Tuning(StudyModel):
     )
     """What other scores have to reach, by their names."""
     tune: Annotated[
-        dict[str, TunedNumber], BeforeValidator(_ranges), Field(min_length=1, max_length=40)
+        dict[str, TunedNumber],
+        BeforeValidator(_ranges, json_schema_input_type=ByPath[TunedNumber]),
+        Field(min_length=1, max_length=40),
     ]
     """Ranges of the numbers that are tuned, by dotted path, such as "controller.target_s"."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0

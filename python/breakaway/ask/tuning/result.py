@@ -12,12 +12,13 @@ from breakaway.ask.durable.records import Records
 from breakaway.ask.tuning.evaluation import Evaluation
 from breakaway.ask.tuning.problem import Tuning
 from breakaway.ask.tuning.writing import EVALUATIONS
+from breakaway.base.one_line import OneLine
 from breakaway.errors import StudyError
 from breakaway.model.scenario.files import load_method
 from breakaway.model.scenario.method import Method
 
 
-class TuningResult(DurableFolder):
+class TuningResult(OneLine, DurableFolder):
     """A tuning in a folder, finished or not."""
 
     _kind = TUNING

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from breakaway.ask.durable.arguments import as_folder, check_options
 from breakaway.ask.durable.finished import SUMMARY
 from breakaway.ask.durable.journal import Journal
 from breakaway.ask.durable.manifest import MANIFEST, manifest_with
@@ -30,8 +29,9 @@ from breakaway.ask.tuning.scores import laws_as_json, laws_of_json
 from breakaway.ask.tuning.search import Search
 from breakaway.ask.tuning.summary import Found
 from breakaway.ask.tuning.writing import EVALUATIONS, UNSEEN, write_end
+from breakaway.base.arguments import check_arguments, check_whole
 from breakaway.base.reading import is_there
-from breakaway.base.text import shown
+from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.method import Method
 
@@ -117,8 +117,9 @@ def tune(
     2
 
     """
-    check_options(resume=resume, threads=threads, progress=progress, notice=notice)
-    folder = as_folder("out", out)
+    check_arguments(tune, locals(), StudyError)
+    thread_count(threads)
+    folder = Path(out)
     asked = _asked(tuning, evaluations)
     search = Search(asked)
     if resume:
@@ -129,16 +130,11 @@ def tune(
     return open_tuning(folder)
 
 
-def _asked(tuning: object, evaluations: object) -> Tuning:
+def _asked(tuning: Tuning, evaluations: int | None) -> Tuning:
     """Give the tuning with as many evaluations as are asked for."""
-    if not isinstance(tuning, Tuning):
-        raise StudyError(f"tuning: {shown(tuning)} is not a Tuning; load one with load_tuning")
     if evaluations is None:
         return tuning
-    if type(evaluations) is not int or not 1 <= evaluations <= EVALUATIONS_MAX:
-        raise StudyError(
-            f"evaluations: {shown(evaluations)} is not a whole number >= 1 and <= {EVALUATIONS_MAX}"
-        )
+    check_whole("evaluations", evaluations, StudyError, 1, EVALUATIONS_MAX)
     return tuning.model_copy(update={"evaluations": evaluations})
 
 

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine
 from breakaway.errors import LogError
 from breakaway.measure.identification.identify import identify
 from breakaway.measure.identification.laws import LAWS, LawName, check_law
@@ -21,7 +23,7 @@ PAYS_ERROR = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class ComparedLaw:
+class ComparedLaw(OneLine):
     """One law's fit, what it predicts of the held-out rows, and whether it pays.
 
     ``held_out_error`` is the root mean square on rows that were not fitted, in N or m. ``against``
@@ -33,6 +35,10 @@ class ComparedLaw:
     against: str
     pays: bool
     because: str
+
+    def __repr__(self) -> str:
+        verdict = "pays" if self.pays else "does not pay"
+        return f"<{self.fit.law.name}: {verdict}, {self.because}>"
 
 
 def compare_laws(
@@ -83,6 +89,7 @@ def compare_laws(
     (True, False)
 
     """
+    check_arguments(compare_laws, locals(), LogError)
     for law in laws:
         check_law(law, asymmetric=False, position_dependent=False)
     if not (len(held_out) == 2 and held_out[0] < held_out[1]):

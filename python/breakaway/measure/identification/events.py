@@ -9,6 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.text import shown
 from breakaway.errors import LogError
 from breakaway.measure.identification.sliding import (
     FAST,
@@ -116,7 +119,7 @@ class BreakawayEvent:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BreakawayReport:
+class BreakawayReport(OneLine):
     """What a log tells about breakaway, and why it does not tell more.
 
     ``offset_n`` is None, with its reason, where it can not be estimated. ``gaps_s`` has the
@@ -138,6 +141,11 @@ class BreakawayReport:
     speed_window_s: float
     gaps_s: tuple[tuple[float, float], ...]
     settings: Mapping[str, float | None]
+
+    def __repr__(self) -> str:
+        bounds = sum(event.is_lower_bound for event in self.events)
+        events = f"{counted(len(self.events), 'event')}, {counted(bounds, 'lower bound')}"
+        return f"<breakaway in {shown(self.name)}: {events}, {len(self.refused)} refused>"
 
 
 def find_breakaway_events(
@@ -226,6 +234,7 @@ def find_breakaway_events(
     'the part slides one way only; give offset_n'
 
     """
+    check_arguments(find_breakaway_events, locals(), LogError)
     settings: dict[str, float | None] = {
         "rest_speed_m_per_s": rest_speed_m_per_s,
         "min_rest_s": min_rest_s,

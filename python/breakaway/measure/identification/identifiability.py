@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
+from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
 from breakaway.measure.identification.guess import Scales, internal_guess, scales, stand_in
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
@@ -185,6 +187,7 @@ def identifiability(
     (10, ['mass_kg'])
 
     """
+    check_arguments(identifiability, locals(), LogError)
     chosen = check_law(law, asymmetric, position_dependent)
     known("motion", motion, MOTIONS)
     steps = 4 if motion == "imposed" else 1

@@ -9,6 +9,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
 from breakaway.measure.identification.identifiability import Prepared, prepare
@@ -174,6 +175,7 @@ def identify(
     (5.0, 20)
 
     """
+    check_arguments(identify, locals(), LogError)
     chosen = check_law(law, asymmetric, position_dependent)
     known("method", method, get_args(Method))
     known("motion", motion, MOTIONS)

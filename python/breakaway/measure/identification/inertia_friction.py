@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.checks import (
     SIGNIFICANCE,
@@ -181,6 +182,7 @@ def identify_inertia_friction(
     [4.0, 30.0, 6.0]
 
     """
+    check_arguments(identify_inertia_friction, locals(), LogError)
     check_settings(log, lowpass_hz, decimation)
     check_sampling(log, decimation)
     moved = derive_motion(log, lowpass_hz)

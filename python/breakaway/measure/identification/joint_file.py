@@ -11,6 +11,7 @@ import tomli_w
 from pydantic import Field
 
 from breakaway._core import __version__
+from breakaway.base.arguments import check_arguments
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import text_of
 from breakaway.errors import LogError, ScenarioError
@@ -155,7 +156,7 @@ class JointFile(Model):
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
     not_identified: dict[str, Text]
-    draws: Draws | None = None
+    draws: Annotated[Draws | None, Field(repr=False)] = None
 
     @classmethod
     def from_fit(cls, fit: InertiaFrictionFit, log: Log) -> JointFile:
@@ -174,6 +175,7 @@ class JointFile(Model):
             A symmetric friction parameter is negative: no joint file holds such a joint.
 
         """
+        check_arguments(JointFile.from_fit, locals(), LogError)
         both = fit.symmetric
         for name, value in (
             ("coulomb_n", both.coulomb_n),
@@ -239,6 +241,7 @@ class JointFile(Model):
             The Coulomb friction is not identifiable: there is no joint to write.
 
         """
+        check_arguments(JointFile.from_identification, locals(), LogError)
         told = {one.name for one in found.estimates if one.identifiable}
         coulomb = "coulomb_positive_n" if found.law.asymmetric else "coulomb_n"
         if coulomb in found.fixed:
@@ -316,6 +319,7 @@ class JointFile(Model):
             The folder can not be made or not be written to, or ``path`` is a folder.
 
         """
+        check_arguments(JointFile.save, locals(), LogError)
         text = tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
         write_atomically(Path(path), text.encode())
 
@@ -335,6 +339,7 @@ class JointFile(Model):
             range; each is named.
 
         """
+        check_arguments(JointFile.load, locals(), LogError)
         source = Path(path)
         return parse_toml(cls, text_of(source, ScenarioError), source.name)
 

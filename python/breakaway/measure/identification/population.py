@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
+from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine, counted
 from breakaway.errors import LogError
 from breakaway.measure.identification.censored import (
     FEWEST_VALUES,
@@ -34,7 +36,7 @@ FIELDS = {"breakaway_force_n": "joint.stiction_n", "sliding_force_n": "joint.cou
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Population:
+class Population(OneLine):
     """How parts differ in what it takes to free them.
 
     Attributes
@@ -69,6 +71,10 @@ class Population:
     correlation: float | None
     notes: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        seen = f"{counted(len(self.parts), 'part')}, {counted(self.events, 'event')}"
+        return f"<population: {seen}, fits of {', '.join(self.fits)}>"
+
     def distributions(self) -> dict[str, LogNormal | Normal]:
         """Return the distributions by field of a scenario, for ``vary`` of a study.
 
@@ -100,6 +106,7 @@ class Population:
             have a breakaway force above its sliding force.
 
         """
+        check_arguments(Population.correlated, locals(), LogError)
         if not 1 <= count <= 1_000_000:
             raise LogError(f"count is {count}; it must be 1 to 1000000")
         if self.correlation is None:
@@ -191,6 +198,7 @@ def fit_population(
     {'distribution': 'log_normal', 'median': 91.184..., 'sigma': 0.198...}
 
     """
+    check_arguments(fit_population, locals(), LogError)
     reports = [
         log if isinstance(log, BreakawayReport) else _searched(log, passed_share) for log in logs
     ]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.base.one_line import OneLine, counted
 from breakaway.measure.identification.laws import SHARED, Law
 from breakaway.measure.identification.record import (
     Rows,
@@ -21,7 +22,7 @@ from breakaway.measure.logs.log import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class Prediction(OneLine):
     """Simulated and measured rows. ``segment`` says which segment a row is of.
 
     ``channel`` is the one that the motion does not impose: ``position_m`` where the part moves
@@ -36,6 +37,10 @@ class Prediction:
     measured_force_n: Array
     segment: NDArray[np.int64]
     channel: str
+
+    def __repr__(self) -> str:
+        rows = counted(len(self.t_s), "row")
+        return f"<prediction of {self.channel}: {rows}, RMS error {self.rms_error:.3g}>"
 
     @property
     def error(self) -> Array:

@@ -9,6 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.text import shown
 from breakaway.errors import LogError
 from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.output_error import Problem, Progress
@@ -33,7 +36,7 @@ from breakaway.measure.logs.log import Array, Log
 
 
 @dataclass(frozen=True, eq=False)
-class Identification:
+class Identification(OneLine):
     """A joint as one log tells it.
 
     ``estimates`` are the parameters that were fitted, ``fixed`` those that were held.
@@ -63,6 +66,12 @@ class Identification:
     loss: str
     fit: Prediction
     internals: Internals = field(repr=False)
+
+    def __repr__(self) -> str:
+        told = sum(one.identifiable for one in self.estimates)
+        known = f"{told} of {counted(len(self.estimates), 'parameter')} identifiable"
+        off = f"{self.relative_error_percent:.3g} % off"
+        return f"<{self.law.name} fit of {shown(self.log.name)}: {known}, {off}>"
 
     @property
     def channel(self) -> str:
@@ -94,6 +103,7 @@ class Identification:
             n; laws that are compared have to be given the same.
 
         """
+        check_arguments(Identification.aic_for, locals(), LogError)
         deviance = rows * math.log(max(self.rms_error, 1e-300) ** 2)
         return deviance + 2.0 * (len(self.estimates) + 1)
 
@@ -132,6 +142,7 @@ class Identification:
             The log lacks a channel that the motion needs, or a span is empty.
 
         """
+        check_arguments(Identification.predict, locals(), LogError)
         settings = self.settings
         if motion is not None:
             known("motion", motion, MOTIONS)
@@ -160,6 +171,7 @@ class Identification:
             The parameter was not fitted.
 
         """
+        check_arguments(Identification.profile, locals(), LogError)
         inner = self.internals
         place = self._place(name)
         error = math.sqrt(inner.covariance.matrix[place, place])
@@ -186,6 +198,7 @@ class Identification:
             emcee is not installed; it is the extra ``posterior``.
 
         """
+        check_arguments(Identification.posterior, locals(), LogError)
         at_least_one("samples", samples)
         check_seed(seed)
         inner = self.internals
@@ -220,6 +233,7 @@ class Identification:
         draws below 0 of those that can not be are mirrored there.
 
         """
+        check_arguments(Identification.draws, locals(), LogError)
         at_least_one("samples", samples)
         check_seed(seed)
         inner = self.internals

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import chi2, norm
 
+from breakaway.base.one_line import OneLine, counted
 from breakaway.errors import LogError
 from breakaway.measure.identification.output_error import Problem
 from breakaway.measure.logs.log import Array
@@ -233,7 +234,7 @@ def _crossings(values: Array, deviance: Array, open_low: float) -> tuple[float, 
 
 
 @dataclass(frozen=True, eq=False)
-class Posterior:
+class Posterior(OneLine):
     """Draws of the parameters, given the log.
 
     ``samples`` maps a parameter to its draws, the same row of all being one draw. The chain's
@@ -246,6 +247,10 @@ class Posterior:
     walkers: int
     steps: int
     weight: float
+
+    def __repr__(self) -> str:
+        draws = counted(len(next(iter(self.samples.values()))), "draw")
+        return f"<posterior: {draws} of {', '.join(self.samples)}>"
 
 
 def posterior(

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from breakaway.base.text import visible
+from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.text import shown, visible
 from breakaway.errors import LogError
 
 Array = npt.NDArray[np.float64]
@@ -22,7 +24,7 @@ LARGEST_VALUE = 1e12
 
 
 @dataclass(frozen=True, eq=False)
-class Channel:
+class Channel(OneLine):
     """A measured quantity with its own time stamps.
 
     The arrays are copied and made read-only. Rows count from 1, which is the first sample.
@@ -65,6 +67,8 @@ class Channel:
     unit: str = ""
 
     def __post_init__(self) -> None:
+        texts = {"name": self.name, "from_name": self.from_name, "unit": self.unit}
+        check_arguments(Channel.__init__, texts, LogError)
         object.__setattr__(self, "t_s", checked("t_s", self.t_s))
         object.__setattr__(self, "values", checked(self.name, self.values))
         if len(self.t_s) != len(self.values):
@@ -72,6 +76,9 @@ class Channel:
                 f"column '{self.name}' has {len(self.values)} rows and 't_s' has "
                 f"{len(self.t_s)}; they must have equally many: export them together"
             )
+
+    def __repr__(self) -> str:
+        return f"<channel {shown(self.name)}: {counted(self.rows, 'row')}>"
 
     @property
     def rows(self) -> int:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import signal
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.logs.channel import Array
 from breakaway.measure.logs.findings import quantum
@@ -103,6 +104,7 @@ def noise_floor(log: Log, channel: str) -> NoiseFloor:
     0.01
 
     """
+    check_arguments(noise_floor, locals(), LogError)
     values = log[channel]
     d = np.diff(values, n=DIFFERENCE_ORDER)
     spread = 1.4826 * float(np.median(np.abs(d - np.median(d))))
@@ -146,6 +148,7 @@ def derive_motion(log: Log, lowpass_hz: float | None = None) -> Motion:
     True
 
     """
+    check_arguments(derive_motion, locals(), LogError)
     position = log.position_m
     check_even(log)
     rate = log.sample_rate_hz

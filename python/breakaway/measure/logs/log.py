@@ -11,7 +11,9 @@ from types import MappingProxyType
 
 import numpy.typing as npt
 
-from breakaway.base.text import brief, visible
+from breakaway.base.arguments import check_arguments
+from breakaway.base.one_line import OneLine, counted
+from breakaway.base.text import brief, shown, visible
 from breakaway.errors import LogError
 from breakaway.measure.logs import changes
 from breakaway.measure.logs.channel import Array, Channel, checked, named
@@ -25,7 +27,7 @@ MOTION = ("position_m", "force_n", "reference_m", "velocity_m_per_s")
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Log:
+class Log(OneLine):
     """Position and force of one moving part over time, as they were measured.
 
     Nothing is repaired, converted or resampled unless it is asked for; ``history`` says what
@@ -106,6 +108,7 @@ class Log:
         ignored_columns: Iterable[str] = (),
         history: Iterable[str] = (),
     ) -> None:
+        check_arguments(Log.__init__, locals(), LogError)
         named_arrays = (position_m, force_n, reference_m, velocity_m_per_s)
         given = {name: a for name, a in zip(MOTION, named_arrays, strict=True) if a is not None}
         with named("log" if source is None else source.name):
@@ -153,6 +156,7 @@ class Log:
         146
 
         """
+        check_arguments(Log.from_channels, locals(), LogError)
         log = cls.__new__(cls)
         log._fill(channels, source, sha256, ignored_columns, history)
         return log
@@ -179,6 +183,12 @@ class Log:
         object.__setattr__(self, "sha256", sha256)
         object.__setattr__(self, "ignored_columns", tuple(ignored_columns))
         object.__setattr__(self, "history", tuple(history))
+
+    def __repr__(self) -> str:
+        channels = ", ".join(
+            f"{name} ({counted(one.rows, 'row')})" for name, one in self.channels.items()
+        )
+        return f"<log {shown(self.name)}: {brief(channels)}>"
 
     @property
     def name(self) -> str:
@@ -251,6 +261,7 @@ class Log:
             There is none of this name; the message names those present and the remedy.
 
         """
+        check_arguments(Log.channel, locals(), LogError)
         if name in self.channels:
             return self.channels[name]
         near = difflib.get_close_matches(name, self.channels, n=1)
@@ -322,6 +333,7 @@ class Log:
             Too few samples of a channel lie there.
 
         """
+        check_arguments(Log.between, locals(), LogError)
         with named(self.name):
             cut = changes.between(self.channels.values(), start_s, end_s)
         return self._with(cut, f"cut to {start_s:.9g} s to {end_s:.9g} s")
@@ -351,6 +363,7 @@ class Log:
         content above half of the new rate folds down.
 
         """
+        check_arguments(Log.resampled, locals(), LogError)
         if like is not None:
             self.channel(like)
         with named(self.name):
@@ -385,6 +398,7 @@ class Log:
             The line.
 
         """
+        check_arguments(Log.noted, locals(), LogError)
         return self._with(self.channels.values(), note)
 
     def _with(self, channels: Iterable[Channel], *notes: str) -> Log:

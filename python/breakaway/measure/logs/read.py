@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.logs.assemble import assemble
 from breakaway.measure.logs.budget import Budget
@@ -117,6 +118,7 @@ def read_log(
     breakaway.errors.LogError: missing.csv: there is no such file; check the path
 
     """
+    check_arguments(read_log, locals(), LogError)
     path = Path(path)
     budget = Budget.of(path, memory_bytes)
     with digested(path) as digest:

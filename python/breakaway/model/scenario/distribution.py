@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from breakaway.base.arguments import check_arguments
+from breakaway.errors import ScenarioError
 from breakaway.model.scenario.model import Model, NotNegative, Positive
 
 Array = NDArray[np.float64]
@@ -45,6 +47,7 @@ class Uniform(Model):
             Shares, within 0 and 1.
 
         """
+        check_arguments(Uniform.quantile, locals(), ScenarioError)
         return (1.0 - u) * self.low + u * self.high
 
     def scaled(self, factor: float) -> Uniform:
@@ -56,6 +59,7 @@ class Uniform(Model):
             1 for no change, 0 for no spread.
 
         """
+        check_arguments(Uniform.scaled, locals(), ScenarioError)
         center, half = 0.5 * (self.low + self.high), 0.5 * (self.high - self.low)
         return Uniform(low=center - factor * half, high=center + factor * half)
 
@@ -91,6 +95,7 @@ class LogUniform(Model):
             Shares, within 0 and 1.
 
         """
+        check_arguments(LogUniform.quantile, locals(), ScenarioError)
         return _within(self.low ** (1.0 - u) * self.high**u, self.low, self.high)
 
     def scaled(self, factor: float) -> LogUniform:
@@ -102,6 +107,7 @@ class LogUniform(Model):
             1 for no change, 0 for no spread.
 
         """
+        check_arguments(LogUniform.scaled, locals(), ScenarioError)
         center, half = (self.low * self.high) ** 0.5, (self.high / self.low) ** (0.5 * factor)
         return LogUniform(low=center / half, high=center * half)
 
@@ -143,6 +149,7 @@ class Normal(Model):
             Shares, within 0 and 1.
 
         """
+        check_arguments(Normal.quantile, locals(), ScenarioError)
         from scipy.special import ndtr, ndtri
 
         if self.std == 0.0:
@@ -165,6 +172,7 @@ class Normal(Model):
             1 for no change, 0 for no spread.
 
         """
+        check_arguments(Normal.scaled, locals(), ScenarioError)
         return Normal(
             mean=self.mean,
             std=factor * self.std,
@@ -208,6 +216,7 @@ class LogNormal(Model):
             Shares, within 0 and 1.
 
         """
+        check_arguments(LogNormal.quantile, locals(), ScenarioError)
         normal = Normal(
             mean=0.0,
             std=self.sigma,
@@ -225,6 +234,7 @@ class LogNormal(Model):
             1 for no change, 0 for no spread.
 
         """
+        check_arguments(LogNormal.scaled, locals(), ScenarioError)
 
         def stretched(bound: float | None) -> float | None:
             return None if bound is None else self.median * (bound / self.median) ** factor
@@ -250,7 +260,7 @@ class Samples(Model):
 
     distribution: Literal["samples"] = "samples"
     """The kind of distribution."""
-    values: Annotated[tuple[float, ...], Field(min_length=1, strict=False)]
+    values: Annotated[tuple[float, ...], Field(min_length=1, strict=False, repr=False)]
     """The values."""
     rows: Literal["independent", "shared"] = "independent"
     """Whether a value is taken on its own, or from the same row of the table as those of the other
@@ -265,6 +275,7 @@ class Samples(Model):
             Shares, within 0 and 1.
 
         """
+        check_arguments(Samples.quantile, locals(), ScenarioError)
         count = len(self.values)
         place = np.minimum((u * count).astype(np.int64), count - 1)
         return np.asarray(self.values)[place]
@@ -278,6 +289,7 @@ class Samples(Model):
             1 for no change, 0 for no spread.
 
         """
+        check_arguments(Samples.scaled, locals(), ScenarioError)
         values = np.asarray(self.values)
         center = float(values.mean())
         moved = center + factor * (values - center)

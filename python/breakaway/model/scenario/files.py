@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import difflib
+import tomllib
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar
 
 import tomli_w
 
+from breakaway.base.arguments import check_arguments, check_choice
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import table_of, text_of
 from breakaway.errors import ScenarioError
@@ -21,6 +23,8 @@ from breakaway.model.scenario.scenario import Scenario
 AnyModel = TypeVar("AnyModel", bound=Model)
 
 PRESETS = files("breakaway.model.presets")
+FOLDERS = ("", "populations", "methods", "stacks")
+"""Folders of presets; that of scenarios has no name."""
 
 
 def preset_names(folder: str = "") -> list[str]:
@@ -32,8 +36,30 @@ def preset_names(folder: str = "") -> list[str]:
         Which presets: scenarios, where it is left out.
 
     """
+    check_choice("folder", folder, FOLDERS, ScenarioError)
     presets = PRESETS / folder if folder else PRESETS
     return sorted(p.name.removesuffix(".toml") for p in presets.iterdir() if p.name[-5:] == ".toml")
+
+
+def preset_descriptions(folder: str = "") -> dict[str, str]:
+    """Names of the presets, each with its description, or else the first line of its file.
+
+    Parameters
+    ----------
+    folder : {"", "populations", "methods", "stacks"}, optional
+        Which presets: scenarios, where it is left out.
+
+    Examples
+    --------
+    >>> preset_descriptions("stacks")["pi_p888_91_pd200"]
+    'PI Ceramic PICMA stack P-888.91, 10 x 10 x 36 mm, on a PiezoDrive PD200 amplifier of 150 V.'
+
+    """
+    texts = {name: _preset_text(name, folder) for name in preset_names(folder)}
+    return {
+        name: tomllib.loads(text).get("description") or text.split("\n", 1)[0].lstrip("# ")
+        for name, text in texts.items()
+    }
 
 
 def load_scenario(source: str | Path) -> Scenario:
@@ -60,6 +86,7 @@ def load_scenario(source: str | Path) -> Scenario:
     breakaway.errors.ScenarioError: paper_as_computd: ... did you mean paper_as_computed?
 
     """
+    check_arguments(load_scenario, locals(), ScenarioError)
     return _load(Scenario, source, "")
 
 
@@ -82,6 +109,7 @@ def load_population(source: str | Path) -> PartPopulation:
     10.0
 
     """
+    check_arguments(load_population, locals(), ScenarioError)
     return _load(PartPopulation, source, "populations")
 
 
@@ -104,6 +132,7 @@ def load_method(source: str | Path) -> Method:
     'feed_axis'
 
     """
+    check_arguments(load_method, locals(), ScenarioError)
     return _load(Method, source, "methods")
 
 
@@ -129,14 +158,18 @@ def load_stack(source: str | Path) -> Piezo:
     3800
 
     """
+    check_arguments(load_stack, locals(), ScenarioError)
     return _load(Piezo, source, "stacks")
 
 
 def _load(model: type[AnyModel], source: str | Path, folder: str) -> AnyModel:
     if isinstance(source, str) and source in preset_names(folder):
-        text = PRESETS.joinpath(*folder.split(), f"{source}.toml").read_text(encoding="utf-8")
-        return parse_toml(model, text, source)
+        return parse_toml(model, _preset_text(source, folder), source)
     return parse_toml(model, _read(Path(source), preset_names(folder)), str(source))
+
+
+def _preset_text(name: str, folder: str) -> str:
+    return PRESETS.joinpath(*folder.split(), f"{name}.toml").read_text(encoding="utf-8")
 
 
 def parse_scenario(text: str, source: str) -> Scenario:
@@ -189,6 +222,7 @@ def save_scenario(scenario: Scenario, path: str | Path) -> None:
         The file can not be written.
 
     """
+    check_arguments(save_scenario, locals(), ScenarioError)
     write_atomically(Path(path), scenario_toml(scenario).encode())
 
 

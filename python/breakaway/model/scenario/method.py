@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
+from breakaway.base.arguments import check_arguments
+from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import Actuator
 from breakaway.model.scenario.controller import Controller
 from breakaway.model.scenario.model import Model, Name, Positive, Text
@@ -92,6 +94,7 @@ class Method(Model):
         {'controller.feed.speed_m_per_s': array([0.011])}
 
         """
+        check_arguments(Method.told, locals(), ScenarioError)
         length_m = engagement_length_m
         return {
             path: told.times * length_m if isinstance(told, Multiple) else length_m

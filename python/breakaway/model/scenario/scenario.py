@@ -8,6 +8,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Field, model_validator
 
+from breakaway.base.arguments import check_arguments
 from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import (
     Actuator,
@@ -251,6 +252,7 @@ class Scenario(Model):
             The changed scenario is not valid, or a path leads nowhere.
 
         """
+        check_arguments(Scenario.with_, locals(), ScenarioError)
         values = self.model_dump()
         for path, value in (changes or {}).items():
             _set_path(values, path, _plain(value))

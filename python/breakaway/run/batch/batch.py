@@ -11,7 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
+from breakaway.base.arguments import check_arguments
 from breakaway.base.equality import ByValue
+from breakaway.base.extras import pandas
+from breakaway.base.one_line import OneLine, counted
 from breakaway.errors import StudyError
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.model.units import unit_of
@@ -23,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Batch(ByValue):
+class Batch(OneLine, ByValue):
     """Many finished runs of one scenario, as columns: one value for each run."""
 
     scenario: Scenario
@@ -36,6 +39,15 @@ class Batch(ByValue):
     """The metrics that were asked for. What did not happen is not a number."""
     outcome_codes: NDArray[np.uint8] | None
     """Place of each run's outcome among the outcomes, if it was asked for."""
+
+    def __repr__(self) -> str:
+        said = [counted(len(self), "run")]
+        if self.varied:
+            said.append(f"{counted(len(self.varied), 'number')} varied")
+        if self.outcome_codes is not None:
+            freed = int(np.sum(self.outcome_codes == OUTCOMES.index("released")))
+            said.append(f"{freed:,} released")
+        return f"<batch of {self.scenario.name!r}: {', '.join(said)}>"
 
     def __len__(self) -> int:
         return len(self.run_index)
@@ -64,6 +76,7 @@ class Batch(ByValue):
             Row of the run.
 
         """
+        check_arguments(Batch.scenario_of, locals(), StudyError)
         return at_run(self.scenario, self.varied, self._row(i))
 
     def replay(self, i: int, *, trace_every: int | None = None) -> Run:
@@ -85,6 +98,7 @@ class Batch(ByValue):
         True
 
         """
+        check_arguments(Batch.replay, locals(), StudyError)
         from breakaway.run.simulation import simulate
 
         scenario = self.scenario_of(i)
@@ -158,10 +172,5 @@ def as_pandas(table: Any) -> Any:  # noqa: ANN401 - pyarrow has no type stubs, p
         pandas is not installed.
 
     """
-    try:
-        import_module("pandas")
-    except ImportError:
-        raise StudyError(
-            "pandas is not installed; install it with: pip install 'breakaway[pandas]'"
-        ) from None
+    pandas()
     return table.to_pandas()

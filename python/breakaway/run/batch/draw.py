@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway import _core
-from breakaway.base.arguments import check_choice, check_kind, check_whole, run_numbers
+from breakaway.base.arguments import check_arguments, check_whole, column_of, run_numbers
 from breakaway.base.free_memory import check_fits
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
@@ -25,7 +25,6 @@ from breakaway.model.scenario.distribution import (
 
 Array = NDArray[np.float64]
 Design = Literal["random", "sobol", "latin_hypercube"]
-DESIGNS = ("random", "sobol", "latin_hypercube")
 
 SEED_MAX = 2**63 - 1
 """Largest seed, as of a scenario: TOML's integers end there."""
@@ -83,8 +82,7 @@ def draw_columns(
     True
 
     """
-    check_vary(vary)
-    check_choice("design", design, DESIGNS, StudyError)
+    check_arguments(draw_columns, locals(), StudyError)
     check_seed(seed)
     numbers = run_numbers(runs, fewest=0)
     size = numbers.stop if total is None else total
@@ -108,16 +106,7 @@ def draw_columns(
     return columns
 
 
-def check_vary(vary: object) -> None:
-    """Refuse what does not say by dotted path what is to vary."""
-    check_kind(
-        "vary", vary, Mapping, "give a mapping from paths such as joint.stiction_n", StudyError
-    )
-    for path in vary if isinstance(vary, Mapping) else ():
-        check_kind("vary", path, str, "paths are such as joint.stiction_n", StudyError)
-
-
-def check_seed(seed: object) -> None:
+def check_seed(seed: int) -> None:
     """Refuse what can not seed the core's draws."""
     check_whole("seed", seed, StudyError, 0, SEED_MAX)
 
@@ -182,19 +171,11 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
     ([0.0, 0.0, 0.1, 0.1], [1.0, 2.0, 1.0, 2.0])
 
     """
-    check_kind("levels", levels, Mapping, "give values by dotted path", StudyError)
-    columns = [_level_column(path, values) for path, values in levels.items()]
+    check_arguments(grid_columns, locals(), StudyError)
+    columns = [
+        column_of(f"levels[{path!r}]", values, StudyError) for path, values in levels.items()
+    ]
     count = math.prod(map(len, columns))
     check_fits("levels", count, 8.0 * len(levels), "give fewer levels")
     tables = np.meshgrid(*columns, indexing="ij")
     return {path: table.ravel() for path, table in zip(levels, tables, strict=True)}
-
-
-def _level_column(path: str, values: object) -> Array:
-    try:
-        column = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        column = np.zeros(())
-    if column.ndim != 1:
-        raise StudyError(f"levels[{path!r}]: {shown(values)} is not a list of numbers; give one")
-    return column

@@ -11,13 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel
 
 from breakaway import _core
-from breakaway.base.arguments import check_callable, check_choice, run_numbers
+from breakaway.base.arguments import check_arguments, check_choice, run_numbers
 from breakaway.base.free_memory import check_fits
 from breakaway.base.text import shown
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
-from breakaway.model.scenario.given import check_scenario
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch.batch import Batch
 from breakaway.run.batch.columns import (
@@ -26,7 +25,7 @@ from breakaway.run.batch.columns import (
     core_columns,
     with_nominal_controller,
 )
-from breakaway.run.batch.draw import Design, check_vary, draw_columns
+from breakaway.run.batch.draw import Design, draw_columns
 from breakaway.run.finished import RunMetrics
 
 METRICS = (*(field.name for field in fields(RunMetrics)), "outcome")
@@ -106,10 +105,8 @@ def simulate_many(
     64
 
     """
-    check_scenario(scenario)
+    check_arguments(simulate_many, locals(), StudyError)
     vary = {} if vary is None else vary
-    check_vary(vary)
-    check_callable("progress", progress, StudyError)
     if instructions is not None:
         check_choice("instructions", instructions, _core.instructions(), StudyError)
     names = _wanted(metrics)
@@ -175,10 +172,8 @@ def run_columns(
 def _wanted(metrics: Sequence[str] | None) -> Sequence[str]:
     if metrics is None:
         return METRICS
-    if not isinstance(metrics, Sequence) or isinstance(metrics, str) or not metrics:
-        raise StudyError(
-            f"metrics: {shown(metrics)} is not a list of names; give some of {', '.join(METRICS)}"
-        )
+    if not metrics:
+        raise StudyError(f"metrics: {shown(metrics)} is empty; give some of {', '.join(METRICS)}")
     for name in metrics:
         check_choice("metrics", name, METRICS, StudyError)
     return tuple(dict.fromkeys(metrics))

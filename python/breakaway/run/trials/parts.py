@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.base.arguments import check_arguments
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
-from breakaway.model.scenario.given import check_population
 from breakaway.model.scenario.laws import LAWS, Law, numbers_of_parts, shared_numbers, stiffness_of
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import QUANTITIES, PartPopulation
@@ -47,7 +47,7 @@ def draw_parts(population: PartPopulation, runs: int | range, *, seed: int) -> d
     True
 
     """
-    check_population(population)
+    check_arguments(draw_parts, locals(), StudyError)
     vary: dict[str, Distribution] = {name: getattr(population.parts, name) for name in QUANTITIES}
     return draw_columns(vary, runs, seed=seed)
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from breakaway.base.arguments import check_callable, check_choice, run_numbers
+from breakaway.base.arguments import check_arguments, run_numbers
 from breakaway.base.equality import ByValue
+from breakaway.base.one_line import OneLine, counted
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
-from breakaway.model.scenario.given import check_method, check_population
-from breakaway.model.scenario.laws import LAWS, Law
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import QUANTITIES, Gentleness, PartPopulation
 from breakaway.model.scenario.scenario import Scenario
@@ -45,7 +45,7 @@ TRIAL_METRICS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Trial(ByValue):
+class Trial(OneLine, ByValue):
     """A method on parts of a population, as columns: one value for each part."""
 
     population: PartPopulation
@@ -63,6 +63,11 @@ class Trial(ByValue):
     metrics: Mapping[str, Array]
     """What became of them. What did not happen is not a number."""
 
+    def __repr__(self) -> str:
+        parts = counted(len(self.runs), "part")
+        where = f"{self.method.name!r} on {self.population.name!r}, {self.law}"
+        return f"<trial of {where}: {int(self.released.sum()):,} of {parts} released>"
+
     @property
     def released(self) -> NDArray[np.bool_]:
         """Whether each part is free."""
@@ -77,6 +82,7 @@ class Trial(ByValue):
             What it may suffer, such as ``population.strict``.
 
         """
+        check_arguments(Trial.within, locals(), StudyError)
         return np.asarray(
             self.released
             & (self.metrics["peak_over_breakaway"] <= limits.peak_over_breakaway_max)
@@ -93,7 +99,9 @@ class Trial(ByValue):
             Row of the part.
 
         """
-        row = {name: values[i : i + 1] for name, values in self.parts.items()}
+        check_arguments(Trial.scenario, locals(), StudyError)
+        place = self._row(i)
+        row = {name: values[place : place + 1] for name, values in self.parts.items()}
         steps = int(steps_per_period(self.population, row)[0])
         base = scenario_of(self.population, self.method, self.law, seed=self.seed, steps=steps)
         columns = part_columns(self.population, self.method, self.law, row)
@@ -110,10 +118,16 @@ class Trial(ByValue):
             Every how many samples the trace keeps a row.
 
         """
+        check_arguments(Trial.replay, locals(), StudyError)
         from breakaway.run.simulation import simulate
 
         scenario = self.scenario(i).with_({"trace.every_samples": trace_every})
-        return simulate(scenario, run_index=self.runs[i])
+        return simulate(scenario, run_index=self.runs[self._row(i)])
+
+    def _row(self, i: int) -> int:
+        if not -len(self.runs) <= i < len(self.runs):
+            raise StudyError(f"row {i}: the trial has {len(self.runs)} parts")
+        return i % len(self.runs)
 
 
 def run_trial(
@@ -169,10 +183,7 @@ def run_trial(
     8
 
     """
-    check_population(population)
-    check_method(method)
-    check_choice("law", law, LAWS, StudyError)
-    check_callable("progress", progress, StudyError)
+    check_arguments(run_trial, locals(), StudyError)
     workers = thread_count(threads)
     numbers = run_numbers(runs)
     check_batch_fits(numbers.stop - numbers.start, len(QUANTITIES), len(TRIAL_METRICS))

@@ -1,0 +1,48 @@
+"""Arguments and options that several commands take."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from breakaway.cli.completion import scenario_preset
+
+ScenarioName = Annotated[
+    str,
+    typer.Argument(
+        help="Name of a preset, or path of a TOML file.", autocompletion=scenario_preset
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document.")]
+Threads = Annotated[
+    int | None, typer.Option(min=1, help="Threads. Left out: one for each processor.")
+]
+
+MappingFile = Annotated[
+    Path | None,
+    typer.Option(
+        help="TOML file that names channels, units and signs.",
+        metavar="FILE",
+        show_default="LOG with .toml, if it is there",
+    ),
+]
+MemoryGib = Annotated[
+    float | None,
+    typer.Option(
+        help="Most memory in GiB that the content of a log may take.",
+        show_default="half of what is free",
+    ),
+]
+ResampleHz = Annotated[
+    float | None,
+    typer.Option(help="Bring channels with different time stamps to this rate, by interpolation."),
+]
+Use = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Take one channel of the log for another, such as force_n=friction_n; repeatable.",
+        metavar="CHANNEL=OTHER",
+    ),
+]

@@ -1,0 +1,58 @@
+"""What has to be known of a run before its figures are trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from breakaway.model.scenario.controller import Gains, gain_sets
+from breakaway.model.scenario.scenario import Scenario
+
+if TYPE_CHECKING:
+    from breakaway.run.finished import Outcome, RunMetrics
+
+
+def warnings_of(scenario: Scenario, outcome: Outcome, metrics: RunMetrics) -> Iterator[str]:
+    """Say what is doubtful about a run of a resolved scenario, one sentence each."""
+    if outcome == "diverged":
+        yield from _diverged(scenario, metrics)
+    yield from _stuck_but_loose(scenario)
+    yield from _negative_gains(scenario)
+    let_go_early = metrics.time_to_breakaway_s > 0 and metrics.peak_over_breakaway < 1
+    if scenario.joint.law == "lugre" and let_go_early:
+        yield (
+            f"the joint let go at {metrics.peak_over_breakaway:.2f} of stiction_n: LuGre friction "
+            "creeps under a rising force; compare with law = 'two_region' before sizing an actuator"
+        )
+
+
+def _diverged(scenario: Scenario, metrics: RunMetrics) -> Iterator[str]:
+    at = f"diverged at {metrics.simulated_s:.5g} s"
+    error_mm, force_n = 1e3 * metrics.largest_error_m, metrics.peak_force_n
+    bounds = scenario.limits
+    most_mm, most_n = 1e3 * (bounds.diverged_error_m or 0.0), bounds.diverged_force_n or 0.0
+    if not error_mm <= most_mm:
+        bound = f"limits.diverged_error_m = {most_mm:.5g} mm"
+        yield f"{at}: largest error {error_mm:.5g} mm is above {bound}"
+    if not force_n <= most_n:
+        bound = f"limits.diverged_force_n = {most_n:.5g} N"
+        yield f"{at}: peak force {force_n:.5g} N is above {bound}"
+
+
+def _stuck_but_loose(scenario: Scenario) -> Iterator[str]:
+    presliding_m = scenario.joint.stiction_n / scenario.joint.stiffness_n_per_m
+    travel_m = scenario.limits.breakaway_travel_m
+    if travel_m is not None and travel_m <= presliding_m:
+        yield (
+            f"limits.breakaway_travel_m = {1e6 * travel_m:.5g} µm is within the presliding travel "
+            f"{1e6 * presliding_m:.5g} µm: a stuck joint counts as loose"
+        )
+
+
+def _negative_gains(scenario: Scenario) -> Iterator[str]:
+    for which, gains in gain_sets(scenario.controller).items():
+        if isinstance(gains, Gains) and min(gains.kp_n_per_m, gains.kd_n_s_per_m) < 0.0:
+            yield (
+                f"controller.{which}: one is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
+                f"{gains.kd_n_s_per_m:.4g} N s/m; see `breakaway design`"
+            )
