@@ -43,6 +43,8 @@ def test_every_block_is_a_file_a_change_or_a_command(guide) -> None:
     text = guide.read_text(encoding="utf-8")
     openings = [block["opening"] for block in FENCED.finditer(text)]
     assert text.count("\n```") == 2 * len(openings)
+    for step in steps(guide):
+        assert f"\n`{step.path}`:\n\n```{step.language} {step.path}\n" in text, "pages hide it"
     left = [opening for opening in openings if opening not in ("python", "console", COMMANDS)]
     assert len(left) == len(steps(guide)), left
 
