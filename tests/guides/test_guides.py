@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from tests.guides import tree
@@ -18,16 +19,21 @@ def test_all_guides_are_followed_and_what_they_add_works() -> None:
     files = tree.sources()
     for step in STEPS:
         step.apply(files)
-    (tree.TREE).mkdir(parents=True, exist_ok=True)
     tree.lay_out(files)
     tree.build()
     tree.run("cargo fmt --all --check")
     python = sorted({step.path for step in STEPS if step.path.endswith(".py")})
     tree.run(f"ruff check {' '.join(python)}")
     tree.run(f"ruff format --check {' '.join(python)}")
-    for guide in GUIDES:
-        for command in commands(guide):
-            tree.run(command)
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(tree.run, [command for guide in GUIDES for command in commands(guide)]))
+
+
+@pytest.mark.parametrize("guide", GUIDES, ids=lambda guide: guide.stem)
+def test_a_guide_can_be_followed_alone(guide) -> None:
+    files = tree.sources()
+    for step in steps(guide):
+        step.apply(files)
 
 
 @pytest.mark.parametrize("guide", GUIDES, ids=lambda guide: guide.stem)
@@ -37,6 +43,8 @@ def test_every_block_is_a_file_a_change_or_a_command(guide) -> None:
     text = guide.read_text(encoding="utf-8")
     openings = [block["opening"] for block in FENCED.finditer(text)]
     assert text.count("\n```") == 2 * len(openings)
+    for step in steps(guide):
+        assert f"\n`{step.path}`:\n\n```{step.language} {step.path}\n" in text, "pages hide it"
     left = [opening for opening in openings if opening not in ("python", "console", COMMANDS)]
     assert len(left) == len(steps(guide)), left
 

@@ -13,15 +13,8 @@ from tests.guides.applying import Files
 ROOT = Path(__file__).parents[2]
 TARGET = ROOT / "target"
 TREE = TARGET / "guides"
-SOURCES = (
-    "Cargo.toml",
-    "Cargo.lock",
-    "rustfmt.toml",
-    "pyproject.toml",
-    "crates",
-    "python",
-    "tests",
-)
+SETTINGS = ("Cargo.toml", "Cargo.lock", "rustfmt.toml", "pyproject.toml")
+SOURCES = (*SETTINGS, "crates", "python", "tests")
 BUILT = ("__pycache__", "_core.abi3.so")
 """What arises in the tree and stays there."""
 PROGRAMS = {
@@ -29,6 +22,9 @@ PROGRAMS = {
     "python": sys.executable,
     "ruff": str(Path(sys.executable).with_name("ruff")),
 }
+STACK_KIB = 64 << 10
+"""Of every thread: what is not optimized needs more than is usual."""
+IN_LARGE_STACK = ("sh", "-c", f'ulimit -s {STACK_KIB} && exec "$@"', "sh")
 # Quick to compile, slow to run. Packages of others are compiled once for all trees.
 ENVIRONMENT = {
     **os.environ,
@@ -36,6 +32,7 @@ ENVIRONMENT = {
     "CARGO_PROFILE_DEV_OPT_LEVEL": "0",
     "CARGO_PROFILE_DEV_DEBUG": "0",
     "CARGO_NET_OFFLINE": "true",
+    "RUST_MIN_STACK": str(STACK_KIB << 10),
     "PYO3_PYTHON": sys.executable,
     "PYTHONPATH": str(TREE / "python"),
 }
@@ -48,6 +45,7 @@ def sources() -> Files:
 
 def lay_out(files: Files) -> None:
     """Make the tree these files. What is the same stays as old as it is, so that cargo sees it."""
+    TREE.mkdir(parents=True, exist_ok=True)
     for path in set(_paths(TREE)) - set(files):
         (TREE / path).unlink()
     for path, content in files.items():
@@ -59,9 +57,8 @@ def lay_out(files: Files) -> None:
 
 def build() -> None:
     """Check that all of Rust compiles, tests too, and put the extension into its place."""
-    run(
-        "cargo check -q --locked --workspace --exclude breakaway-python --all-targets --features serde"
-    )
+    rust = "--workspace --exclude breakaway-python --all-targets --features serde"
+    run(f"cargo check -q --locked {rust}")
     run("cargo build -q --locked -p breakaway-python")
     extension = (TARGET / "debug/lib_core.so").read_bytes()
     (TREE / "python/breakaway/_core.abi3.so").write_bytes(extension)
@@ -71,7 +68,7 @@ def run(command: str) -> None:
     """Run a command in the tree; where it fails, what it said is the error."""
     program, *arguments = shlex.split(command, comments=True)
     done = subprocess.run(
-        [PROGRAMS.get(program, program), *arguments],
+        [*IN_LARGE_STACK, PROGRAMS.get(program, program), *arguments],
         cwd=TREE,
         env=ENVIRONMENT,
         capture_output=True,
@@ -83,7 +80,7 @@ def run(command: str) -> None:
 
 def _paths(root: Path) -> list[str]:
     """Give the paths of all sources in a tree, from its root; all but what is built there."""
-    tops = [root / name for name in (SOURCES if root == ROOT else os.listdir(root))]
+    tops = [root / name for name in SOURCES] if root == ROOT else list(root.iterdir())
     found = [path for top in tops for path in ([top] if top.is_file() else top.rglob("*"))]
     return [
         str(path.relative_to(root))

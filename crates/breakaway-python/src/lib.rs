@@ -11,7 +11,7 @@ mod rig;
 
 use breakaway_batch::{FIGURES, Run, TRACE_COLUMNS, run};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyDict;
 
 use crate::bytes::as_bytes;
 use crate::outcome::{OUTCOMES, outcome_code};

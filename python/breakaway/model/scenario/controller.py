@@ -352,10 +352,7 @@ ReferenceController = Pid | FmVibration | TwoStep
 """Controllers that follow the reference."""
 AnyController = ReferenceController | ForceRamp | SteadyFeed | TimedImpacts | VibratedFeed
 
-Controller = Annotated[
-    Pid | FmVibration | TwoStep | ForceRamp | SteadyFeed | TimedImpacts | VibratedFeed,
-    Field(discriminator="kind"),
-]
+Controller = Annotated[AnyController, Field(discriminator="kind")]
 
 
 def gain_sets(controller: AnyController) -> dict[str, Gains | PolePlacement]:
