@@ -8,7 +8,7 @@ from pathlib import Path
 import breakaway as bk
 from breakaway.ask.reproduction.figure_10 import draw_figure_10
 from breakaway.ask.reproduction.survey import read_survey
-from breakaway.show.plots.style import save_figure
+from breakaway.drawing.style import save_figure
 
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs" / "images"

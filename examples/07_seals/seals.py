@@ -8,7 +8,7 @@ from breakaway.measure.identification.events import BreakawayReport, find_breaka
 from breakaway.measure.identification.population import fit_population
 from breakaway.measure.logs import Log, read_log
 from breakaway.show.plots.events import plot_breakaway, plot_breakaway_ratios
-from breakaway.show.plots.style import save_figure
+from breakaway.drawing.style import save_figure
 
 DEFAULT = Path(__file__).parents[2] / "../shared/data/seals"
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import breakaway as bk
+from breakaway.drawing.style import save_figure
 from breakaway.show.plots.design import plot_bode, plot_limit_cycle, plot_nyquist, plot_root_locus
-from breakaway.show.plots.style import save_figure
 
 BASE = bk.load_scenario("paper_as_computed")
 PID = bk.design.SampledPid(bk.design.PidGains(kp=3137.3e3, ki=1283289e3, kd=724.2), 1e-5)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from breakaway.drawing.style import save_figure
 from breakaway.errors import LogError
 from breakaway.measure.identification.events import find_breakaway_events
 from breakaway.measure.logs.log import Log
 from breakaway.show.plots.events import plot_breakaway, plot_breakaway_ratios
-from breakaway.show.plots.style import save_figure
 
 
 def start(*, gap: bool = False, sign: float = 1.0, later: bool = False) -> Log:

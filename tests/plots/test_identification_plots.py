@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from scipy.stats import chi2
 
+from breakaway.drawing.style import COLORS
 from breakaway.errors import LogError
 from breakaway.measure.identification.comparison import compare_laws
 from breakaway.measure.identification.friction import (
@@ -33,7 +34,6 @@ from breakaway.show.plots.identification import (
     plot_profiles,
     plot_residual,
 )
-from breakaway.show.plots.style import COLORS
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 TRUE = {

@@ -9,9 +9,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import breakaway as bk
+from breakaway.drawing.run import BINS, plot_run
+from breakaway.drawing.style import house_style, save_figure, scaled
 from breakaway.model.scenario.laws import LAWS
-from breakaway.show.plots.run import BINS, plot_run
-from breakaway.show.plots.style import house_style, save_figure, scaled
 
 BASE = bk.load_scenario("paper_as_computed")
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from breakaway.drawing.style import save_figure
 from breakaway.model.scenario import Gentleness, load_method, load_population
 from breakaway.show.plots.comparison import Cloud, Course, plot_course, plot_scatter, plot_shares
-from breakaway.show.plots.style import save_figure
 from breakaway.show.report.comparison import ShownFigure, comparison_page
 
 METHODS = ["force_ramp", "paper_pid"]

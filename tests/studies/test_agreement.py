@@ -13,10 +13,10 @@ from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.statistics import mcnemar
 from breakaway.ask.studies.verdicts import compared, compared_shares, direction_of, verdict_of
 from breakaway.cli.app import app
+from breakaway.drawing.style import COLORS
 from breakaway.errors import StudyError
 from breakaway.model.scenario.laws import joint_under
 from breakaway.show.plots.study import plot_agreement
-from breakaway.show.plots.style import COLORS
 
 LAWS = ["lugre", "elasto_plastic", "gms", "coulomb_stiction"]
 LENGTH_M = 0.002

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from breakaway.drawing.style import save_figure
 from breakaway.show.plots.study import plot_compare, plot_robustness, plot_sensitivity, plot_sweep
-from breakaway.show.plots.style import save_figure
 
 
 def point(labels, shift=0.0):

@@ -16,7 +16,7 @@ from markdown_it import MarkdownIt
 from matplotlib.figure import Figure
 
 from breakaway.base import text
-from breakaway.show.plots.style import house_style
+from breakaway.drawing.style import house_style
 
 MARKS = [
     *("*/", "/*", "//", "??", "??/", "[", "]", "(", ")", "{", "}", "é", "摩", "1", "a", " "),

@@ -26,9 +26,9 @@ from typer.testing import CliRunner
 import breakaway as bk
 from breakaway.base import text
 from breakaway.cli.app import app
+from breakaway.drawing.style import save_figure
 from breakaway.model.scenario.model import Model, Name
 from breakaway.show.plots.design import plot_bode
-from breakaway.show.plots.style import save_figure
 
 CODE = '*/ int marker; /* ??/ "; marker \\'
 MARKUP = "=1+1 <marker a='b'> ]]>$\\marker{ $${m}[bold]m[/] | m | `m` *m* &amp; µ"

@@ -424,7 +424,7 @@ def _write(
 
     from breakaway.base.output import output_folder
     from breakaway.base.ownership import DESIGN
-    from breakaway.show.plots.style import save_figure
+    from breakaway.drawing.style import save_figure
 
     with output_folder(folder, DESIGN) as staging:
         text = dumps(plain(content), indent=2, allow_nan=False) + "\n"

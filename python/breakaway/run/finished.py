@@ -217,6 +217,6 @@ class Run(OneLine, ByValue):
 
     def plot(self) -> Figure:
         """Draw position, error and forces over time."""
-        from breakaway.show.plots.run import plot_run
+        from breakaway.drawing.run import plot_run
 
         return plot_run(self)

@@ -113,8 +113,8 @@ def _write_files(run: Run, folder: Path) -> None:
     if not run.trace:
         return
     _write_trace(run, folder)
-    from breakaway.show.plots.run import plot_run
-    from breakaway.show.plots.style import save_figure
+    from breakaway.drawing.run import plot_run
+    from breakaway.drawing.style import save_figure
 
     figure = plot_run(run)
     for name in ("figure.png", "figure.svg"):

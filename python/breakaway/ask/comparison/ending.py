@@ -20,10 +20,10 @@ from breakaway.ask.durable.manifest import manifest_with
 from breakaway.ask.studies.plan import Row
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
+from breakaway.drawing.style import save_figure
 from breakaway.model.scenario.laws import LAW_WORDS
 from breakaway.run.trials import TRIAL_METRICS
 from breakaway.show.plots.comparison import Cloud, plot_course, plot_scatter, plot_shares
-from breakaway.show.plots.style import save_figure
 from breakaway.show.report.comparison import ShownFigure, comparison_page
 
 PAGE, TABLE, ASKED = "index.html", "table.csv", "comparison.toml"

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from breakaway.ask.reproduction.survey import CONFIDENCE, NAMES, DisturbanceRange
-from breakaway.show.plots.style import COLORS, house_figure, house_style
+from breakaway.drawing.style import COLORS, house_figure, house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

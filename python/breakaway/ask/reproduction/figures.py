@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from breakaway.ask.reproduction.figure_10 import CONTROL_COLORS, draw_figure_10
 from breakaway.ask.reproduction.runs import Runs
 from breakaway.ask.reproduction.survey import NAMES, DisturbanceRange
+from breakaway.drawing.style import COLORS, house_figure, house_style
 from breakaway.model.friction.curve import breakaway_force, steady_force
 from breakaway.model.friction.imposed import impose_motion
 from breakaway.model.scenario.files import load_scenario
 from breakaway.model.scenario.joint import Lugre
 from breakaway.run.finished import Run
 from breakaway.run.resolution import resolve
-from breakaway.show.plots.style import COLORS, house_figure, house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

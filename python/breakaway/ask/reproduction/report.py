@@ -28,7 +28,7 @@ from breakaway.ask.reproduction.survey import (
 from breakaway.ask.reproduction.tables import table_1, table_2
 from breakaway.base.output import claim, output_folder
 from breakaway.base.ownership import REPRODUCTION, refuse_links
-from breakaway.show.plots.style import save_figure
+from breakaway.drawing.style import save_figure
 from breakaway.show.report.page import render
 
 VERDICT = {True: "agrees", False: "differs", None: "not in the paper"}

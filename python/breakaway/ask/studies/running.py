@@ -189,7 +189,7 @@ def _write_end(
 
 
 def _save(figure: Any, path: Path) -> None:  # noqa: ANN401 - a figure of matplotlib
-    from breakaway.show.plots.style import save_figure
+    from breakaway.drawing.style import save_figure
 
     for suffix in (".png", ".svg"):
         save_figure(figure, path.with_suffix(suffix))

@@ -72,7 +72,7 @@ def method_toml(found: Found, evaluation: Evaluation, file: str) -> str:
 
 
 def _draw(found: Found, staging: Path, content: Row) -> None:
-    from breakaway.show.plots.style import save_figure
+    from breakaway.drawing.style import save_figure
     from breakaway.show.plots.tuning import plot_history, plot_pareto, plot_slices
 
     tuning, rows = found.tuning, evaluation_rows(found)

@@ -15,9 +15,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from breakaway.base import text
+from breakaway.drawing.style import COLORS, house_figure, house_style, scaled
 from breakaway.model.scenario.laws import LAW_WORDS
 from breakaway.model.scenario.population import Gentleness
-from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
 Row = Mapping[str, Any]
 Array = NDArray[np.float64]

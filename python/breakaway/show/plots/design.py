@@ -15,7 +15,7 @@ from breakaway.base import text
 from breakaway.design.limit_cycle_course import SEEN, LimitCycleComparison
 from breakaway.design.margins import closed_poles, frequencies, frequency_response
 from breakaway.design.regimes import SampledLoop
-from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
+from breakaway.drawing.style import COLORS, house_figure, house_style, scaled
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from breakaway.base import text
+from breakaway.drawing.style import COLORS, house_figure, house_style, scaled
 from breakaway.errors import LogError
 from breakaway.measure.identification.events import LOADING, BreakawayEvent, BreakawayReport
 from breakaway.measure.logs.log import Log
-from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
 Array = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy import signal
 
+from breakaway.drawing.style import COLORS, house_figure, house_style, scaled
 from breakaway.errors import LogError
 from breakaway.measure.identification.friction import (
     FrictionPath,
@@ -23,7 +24,6 @@ from breakaway.measure.identification.laws import SHARED
 from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.uncertainty import LEVEL
 from breakaway.measure.identification.verdicts import SPEED_RATIO, excitation
-from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]

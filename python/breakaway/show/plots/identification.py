@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from scipy import ndimage, signal
 from scipy.stats import chi2, norm
 
+from breakaway.drawing.style import COLORS, WIDTH_IN, house_figure, house_style, scaled
 from breakaway.errors import LogError
 from breakaway.measure.identification.comparison import ComparedLaw
 from breakaway.measure.identification.laws import Law
@@ -29,7 +30,6 @@ from breakaway.measure.identification.record import Span
 from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.uncertainty import LEVEL, Profile
 from breakaway.model.units import unit_of, words_of
-from breakaway.show.plots.style import COLORS, WIDTH_IN, house_figure, house_style, scaled
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]

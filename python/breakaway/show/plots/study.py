@@ -13,9 +13,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from breakaway.base import text
+from breakaway.drawing.style import COLORS, house_figure, house_style, scaled
 from breakaway.model.scenario.laws import LAW_WORDS
 from breakaway.model.units import unit_of, words_of
-from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
 
 Row = Mapping[str, Any]
 Array = NDArray[np.float64]

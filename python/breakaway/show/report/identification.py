@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from breakaway._core import __version__
 from breakaway.base.output import write_atomically
+from breakaway.drawing.style import save_figure, scaled
 from breakaway.errors import LogError
 from breakaway.measure.identification.comparison import ComparedLaw
 from breakaway.measure.identification.events import BreakawayReport
@@ -34,7 +35,6 @@ from breakaway.show.plots.identification import (
     plot_profiles,
     plot_residual,
 )
-from breakaway.show.plots.style import save_figure, scaled
 from breakaway.show.report.page import inline_svg, render
 
 DRAWN = 4000

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,10 +11,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from breakaway.base import text
+from breakaway.drawing.style import COLORS, house_figure, house_style, scaled
 from breakaway.errors import ScenarioError
 from breakaway.model.friction.curve import breakaway_force
-from breakaway.run.finished import Outcome, Run
-from breakaway.show.plots.style import COLORS, house_figure, house_style, scaled
+
+if TYPE_CHECKING:
+    from breakaway.run.finished import Run
 
 Array = NDArray[np.float64]
 
@@ -35,7 +38,7 @@ def plot_run(run: Run) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Apart from pyplot's state; `breakaway.show.plots.style.save_figure` saves it.
+        Apart from pyplot's state; `breakaway.drawing.style.save_figure` saves it.
 
     Raises
     ------
@@ -124,7 +127,7 @@ def _mark_events(panels: list[Axes], run: Run, per_s: float, end_s: float) -> No
         ("breakaway", metrics.time_to_breakaway_s, COLORS["event"]),
         ("release", metrics.time_to_release_s, COLORS["event"]),
     ]
-    if run.outcome is Outcome.DIVERGED:
+    if run.outcome == "diverged":
         events.append(("diverged", metrics.simulated_s, COLORS["alarm"]))
     for label, at_s, color in events:
         if not np.isfinite(at_s):
