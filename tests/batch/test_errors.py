@@ -1,4 +1,4 @@
-"""What can not be run is refused before anything runs."""
+"""What cannot be run is refused before anything runs."""
 
 import re
 import subprocess

@@ -177,7 +177,7 @@ def test_fixed_parameters_stay(rich: Log) -> None:
     assert found["coulomb_n"].value == pytest.approx(20.0, rel=0.01)
 
 
-# What a log does not mean can not matter.
+# What a log does not mean cannot matter.
 
 
 def scaled(log: Log, position: float = 1.0, force: float = 1.0, later_s: float = 0.0) -> Log:

@@ -1,4 +1,4 @@
-"""A log is told what it can not tell, and which experiment would."""
+"""A log is told what it cannot tell, and which experiment would."""
 
 from collections.abc import Callable
 from typing import Any

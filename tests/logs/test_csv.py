@@ -106,9 +106,9 @@ def test_refuses(write: Write, text: str | bytes, words: str) -> None:
 def test_refuses_what_is_no_file(tmp_path: Path) -> None:
     with pytest.raises(LogError, match=r"none\.csv: there is no such file"):
         read_log(tmp_path / "none.csv")
-    with pytest.raises(LogError, match="can not be read"):
+    with pytest.raises(LogError, match="cannot be read"):
         read_log(tmp_path)
-    with pytest.raises(LogError, match="can not be read"):
+    with pytest.raises(LogError, match="cannot be read"):
         read_log(Path("nul\0.csv"))
 
 

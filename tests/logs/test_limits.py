@@ -158,7 +158,7 @@ def test_a_limit_of_the_address_space_counts() -> None:
     assert 0 < float(done.stdout) < 2**31
 
 
-# Claims that the file can not hold
+# Claims that the file cannot hold
 
 
 def test_hdf5_chunks_that_grow_beyond_their_claim(tmp_path: Path) -> None:

@@ -123,7 +123,7 @@ def force_of(path: Path) -> np.ndarray:
 
 
 def why_not(path: Path) -> str:
-    """Return why the force can not be read."""
+    """Return why the force cannot be read."""
     raw = read_mdf(path, Budget(path.name, 1e8))
     assert raw.channels == {}
     return raw.unreadable["force"]

@@ -247,7 +247,7 @@ def test_a_closed_loop_names_its_controller():
 def test_saved_whole_or_not_at_all(simple, simple_page, tmp_path):
     save_identification_report(tmp_path / "report.html", simple)
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == simple_page
-    with pytest.raises(OutputError, match="can not be written"):
+    with pytest.raises(OutputError, match="cannot be written"):
         save_identification_report(tmp_path / "report.html" / "report.html", simple)
     assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
 

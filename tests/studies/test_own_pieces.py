@@ -279,7 +279,7 @@ def test_a_study_of_other_types_is_no_crash(asked, whole, changes, words):
 @pytest.mark.parametrize("text", ["[]", "3", "null", "[" * 50_000, "not JSON", '{"asked": []}'])
 def test_what_is_no_manifest_is_no_crash(whole, text):
     (whole / "manifest.json").write_text(text)
-    with pytest.raises(StudyError, match=r"manifest\.json: can not be read as a manifest: "):
+    with pytest.raises(StudyError, match=r"manifest\.json: cannot be read as a manifest: "):
         open_study(whole)
 
 

@@ -1,4 +1,4 @@
-"""What can not be tuned is said before anything runs: field, value, range, remedy."""
+"""What cannot be tuned is said before anything runs: field, value, range, remedy."""
 
 import sys
 

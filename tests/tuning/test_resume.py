@@ -255,7 +255,7 @@ def test_a_full_disk_keeps_what_is_finished(asked, whole, tmp_path):
             resource.setrlimit(resource.RLIMIT_FSIZE, (size + 40, before[1]))
 
     try:
-        with pytest.raises(bk.OutputError, match=r"can not be written.*; what is finished stays"):
+        with pytest.raises(bk.OutputError, match=r"cannot be written.*; what is finished stays"):
             bk.tune(asked, out=folder, progress=fill)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)

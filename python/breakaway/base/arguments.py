@@ -1,7 +1,7 @@
 """Arguments of public functions: what is of a wrong kind is refused where it comes in.
 
 The annotations of a function say what it takes, and nothing else does: `check_arguments` reads
-them. What they can not say, such as a range, is left to the function.
+them. What they cannot say, such as a range, is left to the function.
 """
 
 from __future__ import annotations

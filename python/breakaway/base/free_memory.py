@@ -26,7 +26,7 @@ def free_memory_bytes() -> float:
 
 
 def check_fits(field: str, count: int, bytes_each: float, remedy: str) -> None:
-    """Refuse what can not fit into the free memory, before any of it is taken.
+    """Refuse what cannot fit into the free memory, before any of it is taken.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def open_regular(path: Path) -> BufferedReader:
     FileNotFoundError
         There is nothing at this path.
     OSError
-        It is no regular file, or can not be read; the text of the error says which.
+        It is no regular file, or cannot be read; the text of the error says which.
 
     """
     _check_regular(os.stat(path).st_mode)  # noqa: PTH116 - a device is not to be opened at all
@@ -65,8 +65,8 @@ def _check_regular(mode: int) -> None:
         raise OSError(f"is {kind}, not a file; give the path of a regular file")
 
 
-# Methods of Path raise where a name is too long, or a folder on the way can not be looked into; for
-# these there is nothing, and whatever opens or writes the place then says why it can not.
+# Methods of Path raise where a name is too long, or a folder on the way cannot be looked into; for
+# these there is nothing, and whatever opens or writes the place then says why it cannot.
 
 
 def is_there(path: Path) -> bool:
@@ -97,7 +97,7 @@ def read_text(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
     FileNotFoundError
         There is nothing at this path.
     OSError
-        It is no regular file, or can not be read.
+        It is no regular file, or cannot be read.
     ValueError
         It is larger than ``most_bytes``, or not UTF-8.
 
@@ -207,7 +207,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     FileNotFoundError
         There is nothing at this path.
     OSError, ValueError
-        It can not be read, is not TOML, or goes beyond a limit.
+        It cannot be read, is not TOML, or goes beyond a limit.
 
     """
     return parse_toml(read_text(path))
@@ -232,7 +232,7 @@ def text_of(
     Raises
     ------
     BreakawayError
-        Of the kind given: there is no such file, it is no regular file, can not be read, is too
+        Of the kind given: there is no such file, it is no regular file, cannot be read, is too
         large, is not UTF-8, or starts with a byte order mark.
 
     """
@@ -241,7 +241,7 @@ def text_of(
     except FileNotFoundError:
         raise kind(f"{path}: {missing}") from None
     except (OSError, ValueError) as error:
-        raise kind(f"{path}: can not be read as text: {why(error)}") from None
+        raise kind(f"{path}: cannot be read as text: {why(error)}") from None
     if text.startswith("\ufeff"):
         raise kind(f"{path}: starts with a byte order mark; save it as plain UTF-8")
     return text
@@ -275,7 +275,7 @@ def read_json(path: Path, most_bytes: int) -> Any:  # noqa: ANN401 - any JSON
     FileNotFoundError
         There is nothing at this path.
     OSError, ValueError
-        It can not be read, is larger than ``most_bytes``, or not JSON.
+        It cannot be read, is larger than ``most_bytes``, or not JSON.
 
     """
     try:

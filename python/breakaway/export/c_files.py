@@ -73,10 +73,10 @@ def export_c(
     Raises
     ------
     ScenarioError
-        It is no scenario, `what` or `real` is not known, the controller can not be designed for
+        It is no scenario, `what` or `real` is not known, the controller cannot be designed for
         this joint, or a number is out of its range as float.
     OutputError
-        The folder can not be written, holds a result of another kind, or files of others under
+        The folder cannot be written, holds a result of another kind, or files of others under
         these names.
 
     Examples
@@ -231,7 +231,7 @@ def _summary(recording: Recording) -> list[str]:
         f"{scenario.timing.steps_per_period} step(s) in a period",
     ]
     if scenario.watch is not None:
-        controller.append("watch: stops at a measurement that can not be true")
+        controller.append("watch: stops at a measurement that cannot be true")
     if scenario.sensors is not None:
         plant.append("sensors: with bandwidth, noise, steps and delay, where they have them")
     if scenario.timing.one_sample_delay:

@@ -91,7 +91,7 @@ def _body(found: dict[str, Any]) -> Body:
 
 
 def _check_defaults(parameters: list[Variable], real: Real) -> None:
-    """Refuse a number that the real type can not hold within its range."""
+    """Refuse a number that the real type cannot hold within its range."""
     from numpy import float32
 
     if real == "double":

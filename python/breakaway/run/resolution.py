@@ -41,7 +41,7 @@ def resolve(scenario: Scenario) -> Scenario:
     Raises
     ------
     ScenarioError
-        It is no scenario, or the controller can not be designed for this joint.
+        It is no scenario, or the controller cannot be designed for this joint.
 
     Examples
     --------

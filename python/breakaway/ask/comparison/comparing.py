@@ -150,7 +150,7 @@ def compare_methods(
     ScenarioError
         There is no such population or method, or it is not valid.
     OutputError
-        The folder can not be written, or the disk is full; finished files stay.
+        The folder cannot be written, or the disk is full; finished files stay.
     KeyboardInterrupt
         Ctrl-C; finished files stay.
 

@@ -81,7 +81,7 @@ class Journal:
         Raises
         ------
         StudyError
-            It can not be read.
+            It cannot be read.
 
         """
         path = self.folder / DIGESTS
@@ -94,7 +94,7 @@ class Journal:
             content = b""
         except OSError as error:
             raise StudyError(
-                f"{path}: can not be read: {error.strerror or error}; remove it, and go on with "
+                f"{path}: cannot be read: {error.strerror or error}; remove it, and go on with "
                 "--resume to have everything computed again"
             ) from None
         lines = content.decode("utf-8", "replace").split("\n")[:-1]
@@ -118,7 +118,7 @@ class Journal:
         except FileNotFoundError:
             return MISSING
         except OSError as error:
-            return f"can not be read ({error.strerror or error})"
+            return f"cannot be read ({error.strerror or error})"
         if name not in self._known:
             return f"has no digest in {DIGESTS}"
         if found != self._known[name]:
@@ -147,7 +147,7 @@ class Journal:
         Raises
         ------
         OutputError
-            It can not be written, or goes through a symbolic link.
+            It cannot be written, or goes through a symbolic link.
 
         """
         path = self.folder / name

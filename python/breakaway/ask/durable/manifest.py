@@ -99,7 +99,7 @@ def read_manifest(folder: Path, called: str) -> dict[str, Any]:
     Raises
     ------
     StudyError
-        There is none, it can not be read, or its identity is not that of its content.
+        There is none, it cannot be read, or its identity is not that of its content.
 
     """
     path = folder / MANIFEST
@@ -136,7 +136,7 @@ def manifest_of_kind(folder: Path, kind: Kind, model: type[Checked] = _Manifest)
     Raises
     ------
     StudyError
-        It is of another kind, or can not be read.
+        It is of another kind, or cannot be read.
 
     """
     manifest = read_manifest(folder, kind.called)
@@ -154,7 +154,7 @@ def manifest_of_kind(folder: Path, kind: Kind, model: type[Checked] = _Manifest)
 
 def _unreadable(path: Path, error: Exception, called: str) -> StudyError:
     return StudyError(
-        f"{path}: can not be read as a manifest: {error}; give the --out of a {called}"
+        f"{path}: cannot be read as a manifest: {error}; give the --out of a {called}"
     )
 
 

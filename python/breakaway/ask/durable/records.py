@@ -36,7 +36,7 @@ class Records:
         Raises
         ------
         StudyError
-            The file can not be read.
+            The file cannot be read.
 
         """
         found: list[dict[str, Any]] = []
@@ -53,7 +53,7 @@ class Records:
         Raises
         ------
         StudyError
-            The file can not be read, or a line is not as it was written.
+            The file cannot be read, or a line is not as it was written.
 
         """
         found = self.read()
@@ -70,9 +70,9 @@ class Records:
         Raises
         ------
         StudyError
-            The file can not be read.
+            The file cannot be read.
         OutputError
-            It can not be written.
+            It cannot be written.
 
         """
         kept = self.read()
@@ -90,7 +90,7 @@ class Records:
         Raises
         ------
         OutputError
-            The disk is full, or the file can not be written; it is as it was before.
+            The disk is full, or the file cannot be written; it is as it was before.
 
         """
         append_inside(self.path, self._line(record, self._count))
@@ -110,7 +110,7 @@ class Records:
         except FileNotFoundError:
             return b""
         except OSError as error:
-            raise StudyError(f"{self.path}: can not be read: {error.strerror or error}") from None
+            raise StudyError(f"{self.path}: cannot be read: {error.strerror or error}") from None
         if len(content) > MOST_BYTES:
             raise StudyError(f"{self.path}: has more than {MOST_BYTES} bytes; it is not ours")
         return content

@@ -39,7 +39,7 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
         The folder holds the same and is not to be resumed, another one, files of others, a
         symbolic link, or what another process is running.
     OutputError
-        The folder can not be written.
+        The folder cannot be written.
 
     """
     called = kind_of(manifest).called

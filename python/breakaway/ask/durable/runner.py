@@ -67,7 +67,7 @@ class Runner:
         Raises
         ------
         OutputError
-            The folder can not be written, or the disk is full.
+            The folder cannot be written, or the disk is full.
 
         """
         if self._journal is not None:
@@ -80,7 +80,7 @@ class Runner:
         Raises
         ------
         OutputError
-            One can not be removed.
+            One cannot be removed.
 
         """
         kept = [piece_name(number) for number in range(self._pieces)]

@@ -201,7 +201,7 @@ def _panel_title(control: str, run: Run) -> str:
 
 
 def displacement(runs: Runs) -> ReproducedFigure:
-    """Figure 9: desired and measured displacement, and the error that the paper can not show."""
+    """Figure 9: desired and measured displacement, and the error that the paper cannot show."""
     drawing = house_figure(height=4.6)
     top, bottom = drawing.subplots(2, sharex=True)
     reference = runs.disturbed["without_vibration"].trace

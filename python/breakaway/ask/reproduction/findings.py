@@ -264,7 +264,7 @@ def _smoother(runs: Runs) -> Finding:
         f"{np.nanmedian(plain.peak_force_n[level]):.0f} N without",
         False,
         "Each pulse throws the part ahead of the reference; the PID's output then turns negative, "
-        "which a tip that only pushes can not follow, and the part waits. This loop is chaotic: "
+        "which a tip that only pushes cannot follow, and the part waits. This loop is chaotic: "
         "a single run is no measurement, and only figures over many runs are quoted.",
     )
 

@@ -226,7 +226,7 @@ class FullSurvey:
         StudyError
             The folder holds figure 10 with other settings or of another version.
         OutputError
-            The folder can not be written; finished levels stay.
+            The folder cannot be written; finished levels stay.
         KeyboardInterrupt
             Ctrl-C; finished levels stay.
 

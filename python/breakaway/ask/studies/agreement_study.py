@@ -272,7 +272,7 @@ class AgreementStudy(StudyBase):
             )
         if not self.certain and self.runs < needed:
             raise StudyError(
-                f"runs: {self.runs} runs can not show which way differences go at "
+                f"runs: {self.runs} runs cannot show which way differences go at "
                 f"{percent(self.agreement.confidence)} confidence, even where all agree; give "
                 f"{needed} or more"
             )

@@ -72,7 +72,7 @@ def run_study(
         The study contradicts itself, an option is not valid, or the folder holds another study;
         nothing has run then.
     OutputError
-        The folder can not be written, or the disk is full; finished pieces stay.
+        The folder cannot be written, or the disk is full; finished pieces stay.
     KeyboardInterrupt
         Ctrl-C; finished pieces stay.
 

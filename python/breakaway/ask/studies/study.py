@@ -129,7 +129,7 @@ class RobustnessStudy(StudyBase):
     ... )
     Traceback (most recent call last):
         ...
-    breakaway.errors.StudyError: runs: 1000 runs can not show a failure probability <= 0.001 ...
+    breakaway.errors.StudyError: runs: 1000 runs cannot show a failure probability <= 0.001 ...
 
     """
 
@@ -144,7 +144,7 @@ class RobustnessStudy(StudyBase):
         needed = runs_needed(asked.failure_probability_max, asked.confidence)
         if self.runs < needed:
             raise StudyError(
-                f"runs: {self.runs} runs can not show a failure probability <= "
+                f"runs: {self.runs} runs cannot show a failure probability <= "
                 f"{asked.failure_probability_max:g} at {percent(asked.confidence)} confidence, "
                 f"even without any failure; give {needed} or more"
             )

@@ -95,7 +95,7 @@ def tune(
         optuna is not installed, an option is not valid, or the folder holds another tuning;
         nothing has run then.
     OutputError
-        The folder can not be written, or the disk is full; finished evaluations stay.
+        The folder cannot be written, or the disk is full; finished evaluations stay.
     KeyboardInterrupt
         Ctrl-C; finished evaluations stay.
 

@@ -122,7 +122,7 @@ class BreakawayEvent:
 class BreakawayReport(OneLine):
     """What a log tells about breakaway, and why it does not tell more.
 
-    ``offset_n`` is None, with its reason, where it can not be estimated. ``gaps_s`` has the
+    ``offset_n`` is None, with its reason, where it cannot be estimated. ``gaps_s`` has the
     stamps before and after each gap. ``settings`` has those that the search was made with.
     """
 

@@ -124,7 +124,7 @@ def _velocity_noise(rows: Rows, noise_m: float) -> float:
 
 
 def _check_dissipation(log: Log, force: Array, v: Array) -> None:
-    """Raise `LogError` where the force brakes on the whole: friction can not drive."""
+    """Raise `LogError` where the force brakes on the whole: friction cannot drive."""
     power = force * v
     if float(np.sum(power)) < -BRAKING * float(np.sum(np.abs(power))):
         raise LogError(

@@ -334,7 +334,7 @@ class _Found:
                     about = f"known to {100 * error / value:.0f} % only" if ends[0] > 0.0 else ""
                     remark = about or f"not told from 0, at most {ends[1]:.3g} in its unit"
             elif not math.isfinite(error):
-                remark = "can not be told apart from others"
+                remark = "cannot be told apart from others"
             elif at_end:
                 remark = "at the end of its range"
             elif parameter.positive and not error < NOT_IDENTIFIABLE:

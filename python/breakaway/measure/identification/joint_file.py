@@ -316,7 +316,7 @@ class JointFile(Model):
         Raises
         ------
         OutputError
-            The folder can not be made or not be written to, or ``path`` is a folder.
+            The folder cannot be made or not be written to, or ``path`` is a folder.
 
         """
         check_arguments(JointFile.save, locals(), LogError)

@@ -70,7 +70,7 @@ def checked_spans(repeats: Sequence[Span]) -> list[Span]:
 
 
 def check_seed(seed: int) -> None:
-    """Raise `LogError` for what can not seed draws."""
+    """Raise `LogError` for what cannot seed draws."""
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise LogError(f"seed: {seed!r} is not a whole number of at least 0")
 

@@ -200,7 +200,7 @@ def _window(log: Log, position: Array, gaps: Places, resolution: float) -> tuple
         if 2 * np.count_nonzero(known) < len(known):
             raise LogError(
                 f"{log.name}: column 't_s': {len(gaps)} gaps in {len(known)} rows leave most rows "
-                "without neighbors, so rest and motion can not be told apart: record evenly, or "
+                "without neighbors, so rest and motion cannot be told apart: record evenly, or "
                 "raise gap_s"
             )
         counts = known & (np.abs(way) > RESOLVED * resolution)

@@ -1,4 +1,4 @@
-"""Which parameters a log can determine, which it can not, and what experiment would."""
+"""Which parameters a log can determine, which it cannot, and what experiment would."""
 
 from __future__ import annotations
 
@@ -249,9 +249,9 @@ def stiction_peak(found: Mapping[str, Estimate], verdict: Sequence[Verdict]) -> 
         return f"stiction peak: not identified ({because})"
     figure = f"F_s / F_c = {ratio.value:.3g}, 95 % interval {ratio.low:.3g} to {ratio.high:.3g}"
     if not judged.identifiable:
-        return f"stiction peak: this log can not tell ({judged.because})"
+        return f"stiction peak: this log cannot tell ({judged.because})"
     if ratio.high < NO_PEAK:
         return f"stiction peak: none; {figure}"
     if ratio.low > 1.0:
         return f"stiction peak: seen; {figure}"
-    return f"stiction peak: this log can not tell; {figure}"
+    return f"stiction peak: this log cannot tell; {figure}"

@@ -37,7 +37,7 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
     Raises
     ------
     LogError
-        A channel is missing, has no unit or no time stamps, or can not be read.
+        A channel is missing, has no unit or no time stamps, or cannot be read.
 
     """
     # Channel refuses what is not finite, by its row.
@@ -202,7 +202,7 @@ def place(raw: RawFile, name: str) -> str:
 
 
 def column(raw: RawFile, name: str) -> RawChannel:
-    """Return a column, or raise `LogError` with the reason why it can not be read."""
+    """Return a column, or raise `LogError` with the reason why it cannot be read."""
     if name in raw.unreadable:
         raise LogError(f"column '{brief(name)}'{_joint(raw.unreadable[name])}")
     return raw.channels[name]

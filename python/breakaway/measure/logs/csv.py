@@ -204,7 +204,7 @@ def _blocks(path: Path, rows: _Rows, count: int, at_once: int) -> Iterator[list[
 
 
 class _Column:
-    """The numbers of a column so far, or the reason why it can not be read."""
+    """The numbers of a column so far, or the reason why it cannot be read."""
 
     def __init__(self, decimal: str) -> None:
         self.decimal = decimal

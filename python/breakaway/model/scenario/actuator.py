@@ -17,7 +17,7 @@ class IdealActuator(Model):
 
 
 class PushOnlyActuator(Model):
-    """A tip that pushes up to a limit and can not pull."""
+    """A tip that pushes up to a limit and cannot pull."""
 
     kind: Literal["push_only"] = "push_only"
     """The kind of actuator."""
@@ -49,7 +49,7 @@ class ForceActuator(Model):
 
 
 class Contact(Model):
-    """The contact between the tip and the part: a spring and damper that can not pull."""
+    """The contact between the tip and the part: a spring and damper that cannot pull."""
 
     stiffness_n_per_m: Positive
     """Stiffness, in N/m."""
@@ -105,7 +105,7 @@ class FeedAxis(Model):
     """A feed axis that moves a tool against the part, maybe through a piezo stack.
 
     The drive follows the commanded speed within its acceleration; the axis, the stack and the
-    contact yield. The tip can not pull.
+    contact yield. The tip cannot pull.
 
     Examples
     --------

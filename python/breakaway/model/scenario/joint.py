@@ -233,7 +233,7 @@ def _check_breaks_loose(joint: TwoRegion | CoulombStiction) -> None:
     if joint.coulomb_n > joint.stiction_n:
         raise ValueError(
             f"coulomb_n: {joint.coulomb_n!r} is not <= stiction_n = {joint.stiction_n!r}; "
-            "this law can not slide at a force that does not break it loose"
+            "this law cannot slide at a force that does not break it loose"
         )
 
 

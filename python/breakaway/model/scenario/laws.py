@@ -145,7 +145,7 @@ def joint_under(law: Law, joint: AnyJoint, numbers: Mapping[str, Any]) -> AnyJoi
         The law.
     joint : Lugre, ElastoPlastic, Gms, TwoRegion or CoulombStiction
         The joint whose numbers it takes, as far as the law has a place for them. A number that
-        the law can not do without, and the joint does not have, is the usual one.
+        the law cannot do without, and the joint does not have, is the usual one.
     numbers : mapping
         Numbers of the law that count instead.
 

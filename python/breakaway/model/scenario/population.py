@@ -91,7 +91,7 @@ class PartPopulation(Model):
     sensors: Sensors = Sensors()
     """What controllers see through."""
     watch: Watch | None = None
-    """What stops a controller whose sensors can not be right."""
+    """What stops a controller whose sensors cannot be right."""
     gentle: Gentleness = Gentleness(
         peak_over_breakaway_max=1.5, jump_max_m=0.5e-3, release_velocity_max_m_per_s=0.3
     )

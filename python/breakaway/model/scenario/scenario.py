@@ -79,7 +79,7 @@ class Scenario(Model):
     sensors: Sensors | None = None
     """What the controller sees through. Left out: it sees what is."""
     watch: Watch | None = None
-    """What stops the controller where its sensors can not be right. Left out: nothing."""
+    """What stops the controller where its sensors cannot be right. Left out: nothing."""
     controller: Controller
     """What decides how hard."""
     timing: Timing
@@ -187,13 +187,13 @@ class Scenario(Model):
         if feeds != isinstance(self.actuator, FeedAxis):
             wanted = "feed_axis" if feeds else "ideal, push_only or force"
             raise ValueError(
-                f"actuator.kind: {self.actuator.kind!r} can not do what controller.kind = "
+                f"actuator.kind: {self.actuator.kind!r} cannot do what controller.kind = "
                 f"{self.controller.kind!r} asks; give {wanted}"
             )
         tip = self.actuator.tip if isinstance(self.actuator, FeedAxis) else None
         if isinstance(self.controller, VibratedFeed) and not isinstance(tip, Piezo):
             raise ValueError(  # noqa: TRY004 - pydantic turns only this into its own error
-                "actuator.tip.kind: 'rigid' can not do what controller.kind = 'vibrated_feed' "
+                "actuator.tip.kind: 'rigid' cannot do what controller.kind = 'vibrated_feed' "
                 "asks; give 'piezo'"
             )
         if self.timing.integrator == "rk4" and isinstance(self.actuator, FeedAxis | ForceActuator):

@@ -62,7 +62,7 @@ class Sensors(Model):
 
 
 class Watch(Model):
-    """Stops the controller for good at a measurement that can not be true.
+    """Stops the controller for good at a measurement that cannot be true.
 
     Then there is no force, no feed, and the stack is relaxed. The reason is the metric
     ``stop_reason``: 1 not a number, 2 the position jumps, 3 it is frozen while the controller

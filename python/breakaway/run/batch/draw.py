@@ -70,7 +70,7 @@ def draw_columns(
     ------
     StudyError
         There is no such design, the runs are not among it, an argument is of a wrong kind or out of
-        range, shared samples differ in length, or the values can not fit into the free memory.
+        range, shared samples differ in length, or the values cannot fit into the free memory.
 
     Examples
     --------
@@ -107,7 +107,7 @@ def draw_columns(
 
 
 def check_seed(seed: int) -> None:
-    """Refuse what can not seed the core's draws."""
+    """Refuse what cannot seed the core's draws."""
     check_whole("seed", seed, StudyError, 0, SEED_MAX)
 
 
@@ -161,7 +161,7 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
     Raises
     ------
     StudyError
-        There is something else than lists of numbers, or the combinations can not fit into the free
+        There is something else than lists of numbers, or the combinations cannot fit into the free
         memory.
 
     Examples

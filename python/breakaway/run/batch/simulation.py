@@ -84,10 +84,10 @@ def simulate_many(
     Raises
     ------
     StudyError
-        What is to vary, a metric or a number of runs is not valid, or the batch can not fit into
+        What is to vary, a metric or a number of runs is not valid, or the batch cannot fit into
         the free memory; nothing has run then.
     ScenarioError
-        It is no scenario, or the controller can not be designed for this joint.
+        It is no scenario, or the controller cannot be designed for this joint.
     KeyboardInterrupt
         Ctrl-C.
 
@@ -124,12 +124,12 @@ def simulate_many(
 
 
 def check_batch_fits(runs: int, varied: int, metrics: int) -> None:
-    """Refuse a batch that can not fit into the free memory.
+    """Refuse a batch that cannot fit into the free memory.
 
     Raises
     ------
     StudyError
-        It can not.
+        It cannot.
 
     """
     run, number, metric = 16, 24, 16  # bytes, those of copies among them

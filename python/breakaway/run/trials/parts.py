@@ -37,7 +37,7 @@ def draw_parts(population: PartPopulation, runs: int | range, *, seed: int) -> d
     ScenarioError
         It is no population.
     StudyError
-        ``runs`` or ``seed`` are out of range, or the parts can not fit into the free memory.
+        ``runs`` or ``seed`` are out of range, or the parts cannot fit into the free memory.
 
     Examples
     --------

@@ -169,7 +169,7 @@ def run_trial(
     ScenarioError
         It is no population, or no method.
     StudyError
-        Another argument is of a wrong kind or out of range, or the trial can not fit into the free
+        Another argument is of a wrong kind or out of range, or the trial cannot fit into the free
         memory; nothing has run then.
     KeyboardInterrupt
         Ctrl-C.

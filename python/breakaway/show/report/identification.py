@@ -53,7 +53,7 @@ MOTION_WORDS = {
 
 @dataclass(frozen=True)
 class Shown:
-    """A figure of the page, with its caption and what it says to who can not see it."""
+    """A figure of the page, with its caption and what it says to who cannot see it."""
 
     key: str
     title: str
@@ -163,7 +163,7 @@ def save_identification_report(
     Raises
     ------
     OutputError
-        The folder can not be made or not be written to, or the disk is full.
+        The folder cannot be made or not be written to, or the disk is full.
 
     """
     page = identification_report(
@@ -576,7 +576,7 @@ def _drawn(plans: Sequence[_Plan]) -> tuple[list[Shown], list[str]]:
 
 
 def _alt(plan: _Plan, figure: Figure) -> str:
-    """Say what the axes of a figure show, to those who can not see them."""
+    """Say what the axes of a figure show, to those who cannot see them."""
     labels = ((one.get_ylabel(), one.get_xlabel()) for one in figure.axes)
     shown = (" over ".join(filter(None, pair)) for pair in labels)
     return f"{plan.title} {'; '.join(dict.fromkeys(filter(None, shown)))}".replace("\n", " ")

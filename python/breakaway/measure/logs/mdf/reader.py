@@ -59,7 +59,7 @@ def read_mdf(path: Path, budget: Budget) -> RawFile:
     Each has the stamps of the time master of its group. Where several groups have a channel of
     one name, its name is ``group/channel`` with the number of the group, from 0. Conversions
     are applied as the standard states them; a channel with one that gives texts, or that is not
-    understood, can not be read, and its raw values are never given instead. The same holds for
+    understood, cannot be read, and its raw values are never given instead. The same holds for
     a channel with a sample that is marked invalid.
 
     Attachments, events and comments are not looked at, and frames of a bus are not decoded.
@@ -149,5 +149,5 @@ def _stamps(clock: _Series | None, found: list[_Series]) -> tuple[Array | None, 
     if unit is None:
         return None, f"the time of its group is in {clock.unit[:40]!r}, which is no known unit"
     if clock.why_not:
-        return None, f"the time of its group can not be read: {clock.why_not}"
+        return None, f"the time of its group cannot be read: {clock.why_not}"
     return unit.factor * clock.values, ""

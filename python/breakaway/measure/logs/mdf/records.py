@@ -178,7 +178,7 @@ def _unpacked(blocks: Blocks, block: Block, budget: Budget) -> bytes:
     kind, way, columns, size, packed_size = blocks.unpack(block, PACKED)
     begin = block.content + struct.calcsize(PACKED)
     if kind != b"DT" or begin + packed_size > block.end or (way == TRANSPOSED and not columns):
-        raise blocks.damaged(block.place, "is packed, and says so in a way that can not be")
+        raise blocks.damaged(block.place, "is packed, and says so in a way that cannot be")
     if way not in (DEFLATED, TRANSPOSED):
         raise LogError(
             f"{blocks.name}: is packed in way {way}, which is not read; export it unpacked, or as "
