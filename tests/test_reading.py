@@ -141,7 +141,7 @@ def test_json_and_text_have_limits(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="has more than 5 bytes"):
         read_text(path, 5)
     path.write_text("[" * 10**5 + "]" * 10**5)
-    with pytest.raises(ValueError, match="lists are too deep"):
+    with pytest.raises(ValueError, match="lists are nested too deeply"):
         read_json(path, 10**6)
     path.write_text("1" * 5000)
     with pytest.raises(ValueError, match="digits"):

@@ -119,7 +119,7 @@ def test_a_missing_file_and_an_unwritable_place(call: Call, tmp_path: Path) -> N
 def test_a_study_does_not_write_over_its_file(call: Call, tmp_path: Path) -> None:
     path = write(tmp_path, "sweep").rename(tmp_path / "study.toml")
     failed = call("study", path, "--out", tmp_path)
-    assert (failed.exit_code, "is what was read" in failed.stderr) == (3, True)
+    assert (failed.exit_code, "is the file that was read" in failed.stderr) == (3, True)
     failed = call("study", path, "--out", tmp_path, "--resume")
     assert (failed.exit_code, "but no manifest.json" in failed.stderr) == (2, True)
 

@@ -151,7 +151,7 @@ def test_a_missing_file_a_missing_extra_and_an_unwritable_place(
 def test_a_tuning_does_not_write_over_its_file(call: Call, tmp_path: Path) -> None:
     path = write(tmp_path).rename(tmp_path / "best.toml")
     failed = call("tune", path, "--out", tmp_path)
-    assert (failed.exit_code, "is what was read" in failed.stderr) == (3, True)
+    assert (failed.exit_code, "is the file that was read" in failed.stderr) == (3, True)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")

@@ -55,8 +55,8 @@ def check_fits(field: str, count: int, bytes_each: float, remedy: str) -> None:
     needed = count * bytes_each
     if needed > ALWAYS_BYTES and needed > (free := free_memory_bytes()):
         raise StudyError(
-            f"{field}: {count:,} take {needed / 2**30:.1f} GiB of memory, and {free / 2**30:.1f} "
-            f"GiB are free; {remedy}"
+            f"{field}: {count:,} need {needed / 2**30:.1f} GiB of memory, but only "
+            f"{free / 2**30:.1f} GiB are free; {remedy}"
         )
 
 

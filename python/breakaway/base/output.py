@@ -34,7 +34,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     Raises
     ------
     OutputError
-        The folder cannot be made or not be written to, or the disk is full.
+        The folder cannot be made or written to, or the disk is full.
 
     """
     try:
@@ -79,7 +79,7 @@ def append_inside(path: Path, line: bytes) -> None:
             before = os.fstat(descriptor).st_size
             try:
                 if os.write(descriptor, line) != len(line):
-                    raise OSError("is full")  # noqa: TRY301 - handled as all that fails here
+                    raise OSError("the disk is full")  # noqa: TRY301 - handled as any failure
                 os.fsync(descriptor)
             except BaseException:
                 with suppress(OSError):
@@ -96,7 +96,7 @@ def open_inside(path: Path) -> Iterator[int]:
     Raises
     ------
     OSError
-        It is a link or no regular file, or cannot be opened.
+        It is a link or not a regular file, or cannot be opened.
 
     """
     flags = os.O_RDWR | os.O_APPEND | os.O_CREAT
@@ -105,7 +105,7 @@ def open_inside(path: Path) -> Iterator[int]:
     descriptor = os.open(path, flags, 0o666)
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise OSError("is no regular file")
+            raise OSError("is not a regular file")
         yield descriptor
     finally:
         os.close(descriptor)
@@ -165,7 +165,7 @@ def refuse_to_overwrite(source: Path, target: Path) -> None:
 
     """
     if is_there(source) and is_there(target) and source.samefile(target):
-        raise OutputError(f"{target}: is what was read; give another place for the result")
+        raise OutputError(f"{target}: is the file that was read; give another place for the result")
 
 
 @contextmanager
