@@ -145,7 +145,7 @@ def test_a_folder_is_not_filled_over_files_of_others(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("mine")
     with (
         pytest.raises(
-            OutputError, match=r"a\.txt: is there already, and no metrics\.json of a run"
+            OutputError, match=r"a\.txt: already exists, and there is no metrics\.json of a run"
         ),
         output_folder(tmp_path, RUN) as staging,
     ):

@@ -280,7 +280,7 @@ def test_varies_rows_together(by_law: JointFile, joint: JointFile) -> None:
 
 def test_a_file_without_draws_has_no_spread(joint: JointFile) -> None:
     bare = joint.model_copy(update={"draws": None})
-    with pytest.raises(ScenarioError, match="has no draws, so no spread is known"):
+    with pytest.raises(ScenarioError, match="has no draws, so its spread is not"):
         bare.vary()
 
 

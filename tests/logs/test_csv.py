@@ -200,7 +200,7 @@ def test_lines_above_the_header_may_hold_anything(write: Write, above: str) -> N
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("\n" + table(), r"the header is an empty line; state as csv\.skip_rows"),
+        ("\n" + table(), r"the header is an empty line; set csv\.skip_rows"),
         ("made by a rig\n" + table(), r"csv\.skip_rows in a mapping leaves out lines"),
         (table().replace(",", "\t"), r'delimiter = "\\t"'),
         (table().replace(",", ";"), 'delimiter = ";"'),

@@ -131,7 +131,7 @@ def test_every_parameter_has_its_row(found, page):
     assert f"{value} ± {error}" in coulomb
     assert coulomb.count(" to ") == 2  # from the errors, and from the profile
     mass = next(row for row in rows if row.strip().startswith("mass"))
-    assert "held at 0: inertia is lost" in mass
+    assert "held at 0: inertia is too small" in mass
 
 
 def test_every_verdict_that_is_negative_has_its_reason_and_remedy(simple, simple_page):

@@ -253,15 +253,15 @@ def _cautions(log: Log, fit: Solution) -> list[str]:
     notes = []
     if fit.residual_autocorrelation > CORRELATED:
         notes.append(
-            f"successive residuals correlate ({fit.residual_autocorrelation:.2f}): something "
-            "acts that the model lacks, and the parameters are about "
-            f"{_inflation(fit):.1f} times less certain than the standard errors say"
+            f"successive residuals correlate ({fit.residual_autocorrelation:.2f}): the model lacks "
+            f"something, and the parameters are about {_inflation(fit):.1f} times less certain "
+            "than the standard errors say"
         )
     if fit.residual_autocorrelation < -CORRELATED / 2:
         notes.append(
             f"successive residuals alternate ({fit.residual_autocorrelation:.2f}): noise of the "
-            "position reaches the acceleration and draws the mass toward 0, beyond its standard "
-            "error; raise decimation"
+            "position reaches the acceleration and biases the mass toward 0 by more than its "
+            "standard error; raise decimation"
         )
     for name, value, error in zip(SYMMETRIC[1:3], fit.values[1:3], fit.errors[1:3], strict=True):
         if value < -SIGNIFICANCE * error:

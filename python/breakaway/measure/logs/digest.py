@@ -37,7 +37,7 @@ def digested(path: Path) -> Iterator[str]:
     yield digest
     if not path.exists() or _identity(path.stat()) != before:
         raise LogError(
-            f"{path.name}: has changed while it was read; read it when it is written whole"
+            f"{path.name}: changed while it was read; read it once it is completely written"
         )
 
 

@@ -124,8 +124,7 @@ def check_names(path: Path, count: int, longest: int = 0) -> None:
     """
     if count > MOST_NAMES:
         raise LogError(
-            f"{path.name}: has more than {MOST_NAMES:,} channels; at most so many are read: "
-            "export fewer"
+            f"{path.name}: has more than {MOST_NAMES:,} channels, the limit: export fewer"
         )
     if longest > LONGEST_NAME:
         raise LogError(

@@ -120,7 +120,7 @@ def _no_scale(properties: Mapping[str, Any]) -> str:
     """Say why the scales of a channel cannot be followed, or nothing."""
     count = properties.get("NI_Number_Of_Scales", 0)
     if not isinstance(count, int | np.integer):
-        return f"states {str(count)[:40]!r} scales; it must be a number: export scaled values"
+        return f"states {str(count)[:40]!r} scales, which is not a number: export scaled values"
     if properties.get("NI_Scaling_Status") == "scaled":
         return ""
     if not 0 <= count <= MOST_SCALES:
@@ -131,7 +131,7 @@ def _no_scale(properties: Mapping[str, Any]) -> str:
             return f"has the scale {found[1][:40]}; at most {MOST_SCALES} are followed"
         if found and str(kind) not in SCALES:
             return (
-                f"is scaled by {str(kind)[:40]!r}, which is not known; its raw values are no "
+                f"is scaled by {str(kind)[:40]!r}, which is unknown, and its raw values are not a "
                 "measurement: export scaled values"
             )
     return ""
