@@ -215,6 +215,6 @@ def test_ctrl_c_ends_a_fit_with_the_best_so_far(tmp_path: Path) -> None:
     assert stderr.replace("fitting", "").strip() == ""
     content = json.loads(stdout)
     assert content["complete"] is False
-    assert "stopped before it was done" in content["notes"][0]
+    assert "stopped before it finished" in content["notes"][0]
     fit = JointFile.load(out).provenance.fit
     assert fit is not None and not fit.complete

@@ -214,7 +214,7 @@ def test_what_can_not_be_drawn_is_left_out_with_a_reason(simple_page):
 
 def test_a_fit_that_was_stopped_says_so(simple):
     text = identification_report(replace(simple, complete=False))
-    assert "The fit was stopped before it was done" in text
+    assert "The fit was stopped before it finished" in text
 
 
 def test_a_stiction_ratio_that_was_held_is_no_peak():

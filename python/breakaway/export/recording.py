@@ -100,6 +100,6 @@ def _check_defaults(parameters: list[Variable], real: Real) -> None:
         held = float(float32(one.value))
         if not one.range.holds(held):
             raise ScenarioError(
-                f"{one.path}: {one.value!r} is {held!r} as float, outside its range; "
-                "export with real = double"
+                f"{one.path}: {one.value!r} is {held!r} as float, outside its range; export with "
+                "real = double"
             )

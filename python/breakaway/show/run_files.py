@@ -48,7 +48,7 @@ def write_run(run: Run, folder: str | Path) -> list[Path]:
 
     ``scenario.toml`` has every number explicit and reruns to the same bits. A run without a
     trace has neither ``trace.parquet``, ``trace.csv`` nor figures; those of an earlier run are
-    removed from the folder, so that it never tells of two runs.
+    removed from the folder, so that it never describes two runs.
 
     Parameters
     ----------
