@@ -135,9 +135,7 @@ def test_a_full_disk_behind_the_output_exits_with_3(args: list[str]) -> None:
             [*COMMAND, *args], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
     assert failed.returncode == 3
-    assert failed.stderr == (
-        "error: standard output: cannot be written: No space left on device\n"
-    )
+    assert failed.stderr == ("error: standard output: cannot be written: No space left on device\n")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")

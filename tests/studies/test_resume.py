@@ -160,7 +160,7 @@ def test_ctrl_c_keeps_finished_pieces(robustness, whole, tmp_path):
     assert (done.finished, len(done.piece_files)) == (False, 10)
     assert repr(done) == "<study 'study', robustness, not finished, 10 pieces>"
     assert done.dataset.count_rows() == 100
-    with pytest.raises(StudyError, match="is not finished, 10 pieces are; go on with --resume"):
+    with pytest.raises(StudyError, match=r"is not finished \(10 pieces are\); go on with --resume"):
         _ = done.summary
     found = []
     run_study(robustness, out=folder, resume=True, progress=lambda at: found.append(at.runs_found))

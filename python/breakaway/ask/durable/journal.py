@@ -95,7 +95,7 @@ class Journal:
         except OSError as error:
             raise StudyError(
                 f"{path}: cannot be read: {error.strerror or error}; remove it, and go on with "
-                "--resume to have everything computed again"
+                "--resume to compute everything again"
             ) from None
         lines = content.decode("utf-8", "replace").split("\n")[:-1]
         self._known = {match[2]: match[1] for line in lines if (match := LINE.fullmatch(line))}
@@ -138,7 +138,7 @@ class Journal:
         flaw = self.flaw(name)
         if flaw is not None:
             raise StudyError(
-                f"{self.folder / name}: {flaw}; go on with --resume to have it made again"
+                f"{self.folder / name}: {flaw}; go on with --resume to compute it again"
             )
 
     def write(self, name: str, content: bytes) -> None:

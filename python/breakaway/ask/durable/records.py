@@ -60,7 +60,7 @@ class Records:
         if len(found) < self._content().count(b"\n"):
             raise StudyError(
                 f"{self.path}: line {len(found) + 1} is not as it was written; go on with --resume "
-                "to have it and what follows computed again"
+                "to compute it and all that follow again"
             )
         return found
 
@@ -79,7 +79,7 @@ class Records:
         if len(kept) < len(self._content().splitlines()):
             say(
                 f"{self.path.name}: line {len(kept) + 1} was not finished, or is not as it was "
-                "written; it and what follows is computed again"
+                "written; it and all that follow are computed again"
             )
             self.replace(kept)
         return kept

@@ -1,4 +1,4 @@
-"""A method that was tried, what it is worth, and how far it is from what is asked for."""
+"""A method that was tried, its scores, and how far it is from what is asked for."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def check_number(method: Method, path: str, values: Mapping[str, float]) -> None
     known = number_paths(method)
     if path in method.knows:
         raise StudyError(
-            f"tune.{path}: is told to the method for each part (knows); take it out of one of them"
+            f"tune.{path}: is set for each part already (knows); take it out of one of the two"
         )
     if path not in known:
         near = difflib.get_close_matches(path, known, n=1, cutoff=0.6)
