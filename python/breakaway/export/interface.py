@@ -81,8 +81,8 @@ FLOW: dict[str, dict[str, str]] = {
         "force_n": "Force to push the part with.",
         "feed_m_per_s": "Speed of the feed.",
         "stack_share": "Share of the piezo stack's full voltage, 0 to 1.",
-        "stop_reason": "Why the watch has stopped the controller: 1 not a number, 2 the position jumps, "
-        "3 it is frozen, 4 the clock stands still; 0 while it has not.",
+        "stop_reason": "Why the watch has stopped the controller: 1 not a number, 2 the position "
+        "jumps, 3 it is frozen, 4 the clock stands still; 0 while it has not.",
         "reference_m": "Where the part should be at this sample.",
     },
     "plant.input": {

@@ -1,4 +1,4 @@
-"""What a folder holds, finished or not, read as far as it is wanted."""
+"""What a folder holds, finished or not; only what is asked for is read."""
 
 from __future__ import annotations
 

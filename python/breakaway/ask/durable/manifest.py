@@ -99,7 +99,7 @@ def read_manifest(folder: Path, called: str) -> dict[str, Any]:
     Raises
     ------
     StudyError
-        There is none, it cannot be read, or its identity is not that of its content.
+        There is none, it cannot be read, or its identity does not match its content.
 
     """
     path = folder / MANIFEST

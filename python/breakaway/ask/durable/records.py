@@ -97,7 +97,7 @@ class Records:
         self._count += 1
 
     def replace(self, records: Iterable[Mapping[str, Any]]) -> None:
-        """Write all records anew, whole or not at all, unless that is what is there."""
+        """Write all records again, whole or not at all, unless they are there already."""
         lines = [self._line(record, number) for number, record in enumerate(records)]
         self._count, content = len(lines), b"".join(lines)
         if not self.path.exists() or self._content() != content:

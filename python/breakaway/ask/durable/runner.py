@@ -33,9 +33,9 @@ class Runner:
         notice: Callable[[str], None] | None = None,
     ) -> None:
         self.runs_max = runs_max
-        """Most runs that it may take, as far as is known."""
+        """The most runs that it may take."""
         self.runs_done = 0
-        """Runs that are done, those found on disk among them."""
+        """Runs that are done, including those found on disk."""
         self.runs_found = 0
         """Runs that were found on disk."""
         self.doing = ""

@@ -73,7 +73,7 @@ Changes = Annotated[dict[str, Any], AfterValidator(_as_written)]
 
 
 def known_metrics(names: list[str], where: str = "metrics") -> list[str]:
-    """Give the names back, unless one of them is no metric or is there twice.
+    """Give the names back, unless one of them is not a metric or is given twice.
 
     Raises
     ------

@@ -60,7 +60,7 @@ def grid_levels(tables: object) -> object:
     Raises
     ------
     ValueError
-        A path has no values, the same value twice, or a range that is none.
+        A path has no values, the same value twice, or an invalid range.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from breakaway.model.scenario.model import numbers_of, valid_range
 def number_paths(method: Method) -> list[str]:
     """Give the paths of all numbers of a method that can be tuned.
 
-    What a method is told of each part is not among them.
+    What a method knows of each part is not among them.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The folder of a tuning, read as far as it is wanted."""
+"""The folder of a tuning; only what is asked for is read."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ MINIMUM_SHARE = 0.05
 """Smallest share of the samples that must move in either direction."""
 
 SIGNIFICANCE = 3.0
-"""An estimate is told from 0 if it exceeds this many standard errors."""
+"""An estimate differs from 0 if it exceeds this many standard errors."""
 
 
 def check_settings(log: Log, lowpass_hz: float, decimation: int) -> None:
@@ -70,7 +70,7 @@ def check_motion(log: Log, motion: Motion) -> None:
             raise LogError(
                 f"{log.name}: column 'position_m' goes {word} in {100 * share:.2g} % of the rows; "
                 f"at least {100 * MINIMUM_SHARE:g} % are needed in each direction, or Coulomb "
-                "friction cannot be told from a constant force: record both directions"
+                "friction cannot be told apart from a constant force: record both directions"
             )
     if not np.any(log.force_n):
         raise LogError(

@@ -88,7 +88,7 @@ class BreakawayEvent:
     is_lower_bound : bool
         Whether the joint may have held more than was recorded.
     reason : str
-        Why it is a lower bound; empty where it is none.
+        Why it is a lower bound; empty where it is not one.
     force_noise_n : float
         Standard deviation of the force's noise.
     breakaway_error_n : float

@@ -147,8 +147,8 @@ def fit_population(
 
     Each log is a part, unless ``parts`` says which logs belong to one. Of a part with several
     events the median counts; it is a lower bound where one of the events at or below the median
-    is, for a larger value in its place may raise the median. `fit_distribution` tells how
-    lower bounds enter.
+    is, because a larger value in its place may raise the median. `fit_distribution` says how lower
+    bounds enter.
 
     Parameters
     ----------

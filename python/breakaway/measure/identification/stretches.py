@@ -100,7 +100,7 @@ def find_stretches(
         of its way, and no less than the noise allows.
     min_rest_s : float
         A shorter standstill, say at a reversal, is no rest; but at the start of a log any
-        standstill is one, for it began before.
+        standstill is one, because it began before.
     min_slip_m : float, optional
         A smaller move is presliding, and belongs to the rest. By default 1 % of the travel,
         and no less than ten standard deviations of the position's noise.

@@ -44,7 +44,7 @@ class Budget:
         Raises
         ------
         LogError
-            What is said is no number above 0.
+            ``most_bytes`` is not a number above 0.
 
         """
         if most_bytes is None:

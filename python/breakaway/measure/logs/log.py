@@ -258,7 +258,7 @@ class Log(OneLine):
         Raises
         ------
         LogError
-            There is none of this name; the message names those present and the remedy.
+            There is no channel of this name; the message names those present and the remedy.
 
         """
         check_arguments(Log.channel, locals(), LogError)

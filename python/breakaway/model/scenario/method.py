@@ -1,4 +1,4 @@
-"""A way to free a part: actuator, controller, and what they are told of it."""
+"""A way to free a part: actuator, controller, and what they know of it."""
 
 from __future__ import annotations
 

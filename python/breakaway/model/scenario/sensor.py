@@ -53,7 +53,7 @@ class ForceSensor(SensorModel):
 
 
 class Sensors(Model):
-    """The sensors of a loop. A velocity sensor, where a PID is told to trust one, is ideal."""
+    """The sensors of a loop. A velocity sensor, if a PID uses one, is ideal."""
 
     position: PositionSensor = PositionSensor()
     """Sensor of the part's position."""
