@@ -62,7 +62,7 @@ class ComparePlan(Plan):
             notes=[
                 "differences are the other controller's value less the first one's in the same "
                 "run, over runs that diverged under neither and have the metric under both; their "
-                "medians have intervals by order statistics at {percent(confidence)}",
+                f"medians have intervals by order statistics at {percent(confidence)}",
                 "p: McNemar's exact test that both release equally often; not corrected for the "
                 "number of controllers or metrics",
             ],

@@ -120,8 +120,7 @@ class SensitivityPlan(Plan):
         notes = [
             "first order: the share of a metric's variance that an input explains by itself; total "
             "order: including all interactions with others; errors are half widths of bootstrap "
-            "intervals "
-            f"at {percent(self.study.sensitivity.confidence)}"
+            f"intervals at {percent(self.study.sensitivity.confidence)}"
         ]
         reasons: dict[str, list[str]] = {}
         for name, reason in without.items():

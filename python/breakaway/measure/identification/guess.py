@@ -128,8 +128,8 @@ def _check_dissipation(log: Log, force: Array, v: Array) -> None:
     power = force * v
     if float(np.sum(power)) < -BRAKING * float(np.sum(np.abs(power))):
         raise LogError(
-            f"{log.name}: force and velocity mostly oppose each other, as if friction drove the "
-            "part; flip the sign of one: 'sign = -1' in the mapping, or the channel's own"
+            f"{log.name}: force and velocity oppose each other on balance, as if friction drove "
+            "the part; flip the sign of one: 'sign = -1' in the mapping, or the channel's own"
         )
 
 

@@ -114,8 +114,7 @@ def _stamps(
         if not (math.isfinite(rate) and 0.0 < rate * (end - start) < MOST_SAMPLES):
             raise LogError(
                 f"rate_hz is {rate_hz!r}; it must be > 0 and give fewer than {MOST_SAMPLES} "
-                "samples "
-                f"in {end - start:.6g} s"
+                f"samples in {end - start:.6g} s"
             )
         # A sample at the very end is not lost to rounding.
         stamps = start + np.arange(math.floor((end - start) * rate * (1 + 1e-12)) + 1) / rate

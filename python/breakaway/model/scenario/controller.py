@@ -239,8 +239,8 @@ class TimedImpacts(Model):
     noise_margin: NotNegative = 1.0
     """Standard deviations of noise that a slope must exceed to count."""
     free_margin_m: NotNegative = 3e-6
-    """Distance beyond travel_m at which the part counts as free, in m: more than noise can
-    feign."""
+    """Distance beyond travel_m at which the part counts as free, in m; it must exceed the
+    noise."""
     actuator_lag_s: NotNegative = 1.6e-4
     """Lag of the actuator, as the controller assumes it, in s."""
 

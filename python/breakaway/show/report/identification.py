@@ -515,8 +515,7 @@ def _posterior_plan(found: Identification, posterior: Posterior | None) -> _Plan
         "Parameters together.",
         f"Draws from {source}; areas hold 50 % and 95 % of them, lines mark the estimate. Slanted "
         "areas are parameters that the log determines better in combination than each by itself. "
-        "Of more "
-        "than six parameters, those that correlate most are shown.",
+        "Of more than six parameters, those that correlate most are shown.",
         lambda: plot_posterior(found, samples),
     )
 

@@ -178,12 +178,11 @@ def _unpacked(blocks: Blocks, block: Block, budget: Budget) -> bytes:
     kind, way, columns, size, packed_size = blocks.unpack(block, PACKED)
     begin = block.content + struct.calcsize(PACKED)
     if kind != b"DT" or begin + packed_size > block.end or (way == TRANSPOSED and not columns):
-        raise blocks.damaged(block.place, "is packed, but how it says so is inconsistent")
+        raise blocks.damaged(block.place, "is packed, but its packing header is inconsistent")
     if way not in (DEFLATED, TRANSPOSED):
         raise LogError(
             f"{blocks.name}: is packed by method {way}, which is not supported; export it "
-            "unpacked, or as "
-            "MDF 4.1"
+            "unpacked, or as MDF 4.1"
         )
     budget.take(f"the packed block at byte {block.place}", 0, 2 * size + packed_size)
     unpacker = zlib.decompressobj()
