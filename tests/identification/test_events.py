@@ -131,7 +131,7 @@ def test_offset_given_or_not_known() -> None:
     one_way = rig(offset_n=5.0)
     report = find_breakaway_events(one_way)
     assert (report.offset_n, report.offset_error_n) == (None, None)
-    assert report.offset_reason == "the part slides one way only; give offset_n"
+    assert report.offset_reason == "the part slides only one way; give offset_n"
     assert report.events[0].breakaway_force_n == report.events[0].raw_breakaway_force_n
     assert only(one_way, offset_n=5.0).breakaway_force_n == pytest.approx(HOLD_N, rel=0.01)
 

@@ -154,7 +154,7 @@ def test_force_scales_every_parameter() -> None:
         (synthetic(peak_n=2.0), "stiction peak: seen, but not identified"),
         (synthetic(force_noise_n=0.1), "stiction peak: none"),
         (synthetic(force_noise_n=20.0), "stiction peak: this log cannot tell"),
-        (synthetic(position_noise_m=1e-5, force_noise_n=0.1), "draws the mass toward 0"),
+        (synthetic(position_noise_m=1e-5, force_noise_n=0.1), "biases the mass toward 0"),
     ],
 )
 def test_notes_follow_the_log(log: Log, note: str) -> None:

@@ -258,7 +258,7 @@ def test_tdms_scales_that_are_known(tmp_path: Path) -> None:
             {"NI_Number_Of_Scales": 1, "NI_Scale__Scale_Type": "Reciprocal"},
             "by 'Reciprocal', which",
         ),
-        ({"NI_Scale__Scale_Type": "Reciprocal"}, "by 'Reciprocal', which is not known"),
+        ({"NI_Scale__Scale_Type": "Reciprocal"}, "by 'Reciprocal', which is unknown"),
         ({"NI_Number_Of_Scales": 9}, "states 9 scales; at most 8"),
         ({"NI_Scale[12]_Scale_Type": "Linear"}, "has the scale 12; at most 8"),
     ],

@@ -231,7 +231,7 @@ def find_breakaway_events(
     >>> event.breakaway_force_n, round(event.sliding_force_n, 3), event.is_lower_bound
     (90.0, 40.0, False)
     >>> report.offset_reason
-    'the part slides one way only; give offset_n'
+    'the part slides only one way; give offset_n'
 
     """
     check_arguments(find_breakaway_events, locals(), LogError)

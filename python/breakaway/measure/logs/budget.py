@@ -78,7 +78,7 @@ class Budget:
         needed = self.taken_bytes + passing_bytes
         if min(kept_bytes, passing_bytes) < 0.0 or not needed <= self.most_bytes:
             raise LogError(
-                f"{self.file}: with {what} it needs {_size(needed)} of memory, more than the "
+                f"{self.file}: with {what} it takes {_size(needed)} of memory, more than the "
                 f"{_size(self.most_bytes)} that it may take; it is damaged or too large: export "
                 "the log in parts or with fewer channels, or allow more by "
                 "memory_bytes= (--memory-gib)"
