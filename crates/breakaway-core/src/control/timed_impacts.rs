@@ -240,10 +240,13 @@ impl<R: Real> Control<R> for TimedImpacts<R> {
 
     #[inline(always)]
     fn step(&self, state: &mut TimedImpactsState<R>, measured: &Measurement<R>) -> Command<R> {
-        self.look(state, measured);
+        // A copy is known to be this function's own: compilers choose in registers then, where they
+        // would store under a mask.
+        let mut moved = *state;
+        self.look(&mut moved, measured);
         R::section("impacts: cut when (x - x_0) + kappa v >= Delta, or fruitless at the ceiling");
-        let seen = self.velocity(&state.window_m, measured.period_s);
-        let n = &mut state.numbers;
+        let seen = self.velocity(&moved.window_m, measured.period_s);
+        let n = &mut moved.numbers;
         let stretched = (n.start_m + n.recoil_m + self.travel_min_m).named("stretched_m");
         let v = R::select(stretched.lt(measured.position_m), seen, R::zero());
         let v = v.named("seen_m_per_s");
@@ -261,7 +264,8 @@ impl<R: Real> Control<R> for TimedImpacts<R> {
         self.coast(n, measured);
         let off = n.coasting.is_set() | n.free.is_set();
         n.force_n = R::select(off, R::zero(), n.force_n);
-        Command::force(n.force_n)
+        *state = moved;
+        Command::force(state.numbers.force_n)
     }
 }
 
