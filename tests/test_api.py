@@ -126,7 +126,7 @@ def test_warnings(scenario):
     starts = (
         "diverged at ",
         "limits.breakaway_travel_m = 10 µm is within the presliding travel 12.5 µm",
-        "controller.gains: one is negative: kp = -1 N/m",
+        "controller.gains: a gain is negative: kp = -1 N/m",
         "the joint let go at ",
     )
     assert len(said) >= 3

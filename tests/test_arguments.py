@@ -117,7 +117,7 @@ def test_what_is_no_scenario_is_refused(given, tmp_path):
         lambda given: bk.export_fmu(given, out=tmp_path / "rig.fmu"),
     )
     for take in takers:
-        with pytest.raises(bk.ScenarioError, match=r"^scenario: .* is not a Scenario; load_scen"):
+        with pytest.raises(bk.ScenarioError, match=r"^scenario: .* is not a Scenario; load a "):
             take(given)
     assert not list(tmp_path.iterdir())
 

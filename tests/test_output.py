@@ -38,7 +38,7 @@ def test_write_replaces_the_whole_file(tmp_path: Path) -> None:
 def test_write_names_the_place_it_can_not_write(tmp_path: Path, place: str) -> None:
     (tmp_path / "file").write_text("")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(OutputError, match="can not be written"):
+    with pytest.raises(OutputError, match="cannot be written"):
         write_atomically(tmp_path / place, b"content")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "folder"]
 
@@ -54,7 +54,7 @@ def test_a_place_that_can_not_be_is_an_output_error(tmp_path: Path, name: str) -
         lambda place: bk.compare_methods(parts, ["paper_pid"], runs=2, out=place),
         lambda place: write_run(bk.simulate(study.base), place),
     ):
-        with pytest.raises(OutputError, match="can not be written"):
+        with pytest.raises(OutputError, match="cannot be written"):
             write(tmp_path / name)
 
 
@@ -145,7 +145,7 @@ def test_a_folder_is_not_filled_over_files_of_others(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("mine")
     with (
         pytest.raises(
-            OutputError, match=r"a\.txt: is there already, and no metrics\.json of a run"
+            OutputError, match=r"a\.txt: already exists, and there is no metrics\.json of a run"
         ),
         output_folder(tmp_path, RUN) as staging,
     ):
@@ -224,5 +224,5 @@ def test_a_disk_that_fills_up_leaves_an_earlier_run_whole(tmp_path: Path, limit:
         [sys.executable, "-c", script, *args], capture_output=True, text=True, check=False
     )
     assert (failed.returncode, failed.stdout) == (3, "")
-    assert failed.stderr.startswith(f"error: {tmp_path}: can not be written: ")
+    assert failed.stderr.startswith(f"error: {tmp_path}: cannot be written: ")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before

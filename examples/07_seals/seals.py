@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
+from breakaway.drawing.style import save_figure
 from breakaway.errors import LogError
 from breakaway.measure.identification.events import BreakawayReport, find_breakaway_events
 from breakaway.measure.identification.population import fit_population
 from breakaway.measure.logs import Log, read_log
 from breakaway.show.plots.events import plot_breakaway, plot_breakaway_ratios
-from breakaway.drawing.style import save_figure
 
 DEFAULT = Path(__file__).parents[2] / "../shared/data/seals"
 

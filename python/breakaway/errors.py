@@ -26,18 +26,18 @@ class ScenarioError(BreakawayError):
 
 
 class StudyError(BreakawayError):
-    """A batch or a study can not be run as asked: its file, its variations or its folder."""
+    """A batch or a study cannot be run as asked: its file, its variations or its folder."""
 
     exit_code = 2
 
 
 class LogError(BreakawayError):
-    """A measured log can not be read, or can not carry the analysis that was asked for."""
+    """A measured log cannot be read, or cannot carry the analysis that was asked for."""
 
     exit_code = 2
 
 
 class OutputError(BreakawayError):
-    """A result can not be written where it was asked to go."""
+    """A result cannot be written where it was asked to go."""
 
     exit_code = 3

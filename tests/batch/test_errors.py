@@ -1,4 +1,4 @@
-"""What can not be run is refused before anything runs."""
+"""What cannot be run is refused before anything runs."""
 
 import re
 import subprocess
@@ -33,8 +33,8 @@ def refusal(quick, monkeypatch):
 def test_a_batch_beyond_the_memory(refusal, options):
     message = refusal(runs=2**32 - 1, **options)
     assert re.fullmatch(
-        r"runs: 4,294,967,295 take \d{4}\.\d GiB of memory, and \d+\.\d GiB are free; ask for "
-        r"fewer metrics, or for fewer runs at a time",
+        r"runs: 4,294,967,295 need \d{4}\.\d GiB of memory, but only \d+\.\d GiB are free; "
+        r"ask for fewer metrics, or for fewer runs at a time",
         message,
     )
 

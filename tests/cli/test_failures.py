@@ -61,7 +61,7 @@ def test_a_wrong_scenario_is_explained(
         (("run", "paper_as_computed", "--seed", "-1"), "seed: -1 is not >= 0"),
         (("run", "paper_as_computed", "--seed", "x"), "--seed"),
         (("run", "paper_as_computed", "--joint", "none.toml"), "there is no such file"),
-        (("run", "."), "can not be read as text"),
+        (("run", "."), "cannot be read as text"),
         (("run",), "Missing argument"),
         (("runn", "paper_as_computed"), "No such command"),
         (("identify", "none.csv"), "none.csv: there is no such file"),
@@ -104,7 +104,7 @@ def test_an_unwritable_place_exits_with_3(
     ):
         failed = call(*args)
         assert failed.exit_code == 3, args
-        assert f"{target}: can not be written: Not a directory" in failed.stderr
+        assert f"{target}: cannot be written: Not a directory" in failed.stderr
     assert (tmp_path / "file").read_text() == ""
 
 
@@ -135,9 +135,7 @@ def test_a_full_disk_behind_the_output_exits_with_3(args: list[str]) -> None:
             [*COMMAND, *args], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
     assert failed.returncode == 3
-    assert failed.stderr == (
-        "error: standard output: can not be written: No space left on device\n"
-    )
+    assert failed.stderr == ("error: standard output: cannot be written: No space left on device\n")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
@@ -215,6 +213,6 @@ def test_ctrl_c_ends_a_fit_with_the_best_so_far(tmp_path: Path) -> None:
     assert stderr.replace("fitting", "").strip() == ""
     content = json.loads(stdout)
     assert content["complete"] is False
-    assert "stopped before it was done" in content["notes"][0]
+    assert "stopped before it finished" in content["notes"][0]
     fit = JointFile.load(out).provenance.fit
     assert fit is not None and not fit.complete

@@ -270,7 +270,7 @@ BAD = [
     ((*QUICK, "--free", "mass"), "'mass' is not a parameter of this law"),
     ((*QUICK, "--use", "force_n"), "--use: 'force_n' is not of the form CHANNEL=OTHER"),
     ((*QUICK, "--use", "force_n=none_n"), "there is no channel 'none_n'"),
-    ((*QUICK, "--use", "force_n=position_m"), "they must be of one dimension"),
+    ((*QUICK, "--use", "force_n=position_m"), "they must have the same dimension"),
     ((*QUICK, "--controller", "none.toml"), "none.toml: there is no such file"),
     ((*QUICK, "--controller", "drive.toml"), "kind: 'servo' is not one of 'cascade', 'pid'"),
     ((*QUICK, "--mapping", "none.toml"), "none.toml: there is no such mapping file"),

@@ -113,13 +113,13 @@ def test_a_missing_file_and_an_unwritable_place(call: Call, tmp_path: Path) -> N
     assert (missing.exit_code, "there is no such file" in missing.stderr) == (2, True)
     (tmp_path / "file").write_text("")
     failed = call("study", write(tmp_path, "sweep"), "--out", tmp_path / "file" / "out")
-    assert (failed.exit_code, "can not be written" in failed.stderr) == (3, True)
+    assert (failed.exit_code, "cannot be written" in failed.stderr) == (3, True)
 
 
 def test_a_study_does_not_write_over_its_file(call: Call, tmp_path: Path) -> None:
     path = write(tmp_path, "sweep").rename(tmp_path / "study.toml")
     failed = call("study", path, "--out", tmp_path)
-    assert (failed.exit_code, "is what was read" in failed.stderr) == (3, True)
+    assert (failed.exit_code, "is the file that was read" in failed.stderr) == (3, True)
     failed = call("study", path, "--out", tmp_path, "--resume")
     assert (failed.exit_code, "but no manifest.json" in failed.stderr) == (2, True)
 

@@ -29,7 +29,7 @@ def test_identify_does_not_write_over_its_log(log, call):
     before = log.read_bytes()
     done = call("identify", str(log), "--out", str(log))
     assert done.exit_code == 3
-    assert "is what was read" in done.stderr
+    assert "is the file that was read" in done.stderr
     assert log.read_bytes() == before
 
 

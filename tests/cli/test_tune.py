@@ -142,7 +142,7 @@ def test_a_missing_file_a_missing_extra_and_an_unwritable_place(
     assert (missing.exit_code, "there is no such file" in missing.stderr) == (2, True)
     (tmp_path / "file").write_text("")
     failed = call("tune", write(tmp_path), "--out", tmp_path / "file" / "out")
-    assert (failed.exit_code, "can not be written" in failed.stderr) == (3, True)
+    assert (failed.exit_code, "cannot be written" in failed.stderr) == (3, True)
     monkeypatch.setitem(sys.modules, "optuna", None)
     failed = call("tune", write(tmp_path), "--out", tmp_path / "out")
     assert (failed.exit_code, "pip install 'breakaway[tune]'" in failed.stderr) == (2, True)
@@ -151,7 +151,7 @@ def test_a_missing_file_a_missing_extra_and_an_unwritable_place(
 def test_a_tuning_does_not_write_over_its_file(call: Call, tmp_path: Path) -> None:
     path = write(tmp_path).rename(tmp_path / "best.toml")
     failed = call("tune", path, "--out", tmp_path)
-    assert (failed.exit_code, "is what was read" in failed.stderr) == (3, True)
+    assert (failed.exit_code, "is the file that was read" in failed.stderr) == (3, True)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")

@@ -180,6 +180,6 @@ def test_a_place_that_is_no_folder_is_refused(inputs, tmp_path):
     (tmp_path / "file").write_text("mine")
     with pytest.raises(bk.OutputError, match="is a file, not a folder; give a folder"):
         bk.compare_methods(population, methods, out=tmp_path / "file")
-    with pytest.raises(bk.OutputError, match="can not be written"):
+    with pytest.raises(bk.OutputError, match="cannot be written"):
         bk.compare_methods(population, methods, out=tmp_path / "file" / "out")
     assert (tmp_path / "file").read_text() == "mine"

@@ -40,7 +40,7 @@ def test_at_a_steady_speed_it_ends_at_the_curve(law, speed, sign):
 def test_a_closed_loop_takes_work(law, speeds, to_and_fro):
     """From rest and back to the same place, a joint takes energy and never gives any.
 
-    At these speeds c |v| is below 4 g, so that a bristle can not push the part.
+    At these speeds c |v| is below 4 g, so that a bristle cannot push the part.
     """
     path = [*speeds, *(-v for v in (reversed(speeds) if to_and_fro else speeds))]
     velocity = np.repeat(path, 200)

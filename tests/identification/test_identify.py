@@ -177,7 +177,7 @@ def test_fixed_parameters_stay(rich: Log) -> None:
     assert found["coulomb_n"].value == pytest.approx(20.0, rel=0.01)
 
 
-# What a log does not mean can not matter.
+# What a log does not mean cannot matter.
 
 
 def scaled(log: Log, position: float = 1.0, force: float = 1.0, later_s: float = 0.0) -> Log:
@@ -282,7 +282,7 @@ def test_ctrl_c_gives_the_best_so_far_and_leaves_nothing_running(rich: Log) -> N
     before = threading.active_count()
     stopped = identify(rich, starts=12, progress=stop)
     assert not stopped.complete
-    assert "stopped before it was done" in stopped.notes[0]
+    assert "stopped before it finished" in stopped.notes[0]
     assert threading.active_count() == before
     assert stopped.rms_error < 25.0
     again = identify(rich, law="coulomb", starts=2)

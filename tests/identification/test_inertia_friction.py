@@ -153,7 +153,7 @@ def test_force_scales_every_parameter() -> None:
     [
         (synthetic(peak_n=2.0), "stiction peak: seen, but not identified"),
         (synthetic(force_noise_n=0.1), "stiction peak: none"),
-        (synthetic(force_noise_n=20.0), "stiction peak: this log can not tell"),
+        (synthetic(force_noise_n=20.0), "stiction peak: this log cannot tell"),
         (synthetic(position_noise_m=1e-5, force_noise_n=0.1), "draws the mass toward 0"),
     ],
 )
@@ -180,10 +180,10 @@ NOISE = np.random.default_rng(1).standard_normal(len(T_S))
         (moved(-0.1 * T_S**2), "goes up in 0 % of the rows"),
         (
             moved(0.1 * sawtooth(6.0 * T_S, 0.5), NOISE),
-            "viscous_n_s_per_m and coulomb_n can not be told apart.*sum of sines",
+            "viscous_n_s_per_m and coulomb_n cannot be told apart.*sum of sines",
         ),
         (moved(synthetic().position_m, 0.0), "column 'force_n' is 0 in every row"),
-        (moved(synthetic().position_m, NOISE), "the mass can not be determined"),
+        (moved(synthetic().position_m, NOISE), "the mass cannot be determined"),
         (moved(synthetic().position_m, -synthetic().force_n), "flip the sign of one"),
     ],
     ids=["rest", "noise", "up", "down", "triangle", "no force", "noise force", "flipped"],

@@ -105,7 +105,7 @@ def test_refuses_to_save_where_it_can_not(joint: JointFile, tmp_path: Path) -> N
     (tmp_path / "file").write_text("")
     (tmp_path / "folder").mkdir()
     for place in ("file/joint.toml", "file/none/joint.toml", "folder"):
-        with pytest.raises(OutputError, match="can not be written"):
+        with pytest.raises(OutputError, match="cannot be written"):
             joint.save(tmp_path / place)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "folder"]
 
@@ -167,10 +167,10 @@ def test_refuses_a_damaged_file(
 def test_refuses_what_is_no_joint_file(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match="there is no such file"):
         JointFile.load(tmp_path / "none.toml")
-    with pytest.raises(ScenarioError, match="can not be read"):
+    with pytest.raises(ScenarioError, match="cannot be read"):
         JointFile.load(tmp_path)
     (tmp_path / "joint.toml").write_bytes(b"\xff\xfe")
-    with pytest.raises(ScenarioError, match="can not be read as text"):
+    with pytest.raises(ScenarioError, match="cannot be read as text"):
         JointFile.load(tmp_path / "joint.toml")
 
 
@@ -280,7 +280,7 @@ def test_varies_rows_together(by_law: JointFile, joint: JointFile) -> None:
 
 def test_a_file_without_draws_has_no_spread(joint: JointFile) -> None:
     bare = joint.model_copy(update={"draws": None})
-    with pytest.raises(ScenarioError, match="has no draws, so no spread is known"):
+    with pytest.raises(ScenarioError, match="has no draws, so its spread is not"):
         bare.vary()
 
 

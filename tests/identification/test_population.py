@@ -232,12 +232,12 @@ def test_logs_are_searched() -> None:
     ("values", "bounds", "words"),
     [
         ([1.0, 2.0], [0, 0], "2 parts gave a value; at least 3 are needed"),
-        ([1.0, 2.0, 3.0], [1, 1, 1], "0 of 3 values are no lower bounds"),
-        ([1.0, 2.0, 3.0], [0, 1, 1], "1 of 3 values are no lower bounds"),
-        ([2.0, 2.0, 2.0], [0, 0, 0], "with 1 different ones; at least 2"),
+        ([1.0, 2.0, 3.0], [1, 1, 1], "0 of 3 values are not lower bounds"),
+        ([1.0, 2.0, 3.0], [0, 1, 1], "1 of 3 values are not lower bounds"),
+        ([2.0, 2.0, 2.0], [0, 0, 0], "1 of them different; at least 2"),
         ([-1.0, 2.0, 3.0], [0, 0, 0], "the smallest value is -1; .* needs finite values > 0"),
         ([1.0, np.nan, 3.0], [0, 0, 0], "needs finite values"),
-        ([1.0, 2.0, 3.0], [0, 0], "one-dimensional and of one length"),
+        ([1.0, 2.0, 3.0], [0, 0], "one-dimensional and of the same length"),
     ],
 )
 def test_values_that_can_not_be_fitted(values: list[float], bounds: list[int], words: str) -> None:

@@ -1,4 +1,4 @@
-"""A log is told what it can not tell, and which experiment would."""
+"""A log is told what it cannot tell, and which experiment would."""
 
 from collections.abc import Callable
 from typing import Any
@@ -74,7 +74,7 @@ def test_one_direction_does_not_tell_an_offset() -> None:
     found = identify(log_of(velocity, lambda v: 5.0 + 40.0 * v), law="coulomb", starts=1)
     told = of(found)["offset_n"]
     assert not told.identifiable and "offset_n" not in found.values
-    assert "slides one way only, so an offset looks like friction" in told.because
+    assert "slides only one way, so an offset looks like friction" in told.because
     assert told.remedy == "let the part slide both ways"
     assert found["viscous_n_s_per_m"].value == pytest.approx(40.0, rel=0.05)
 
@@ -94,7 +94,7 @@ def test_a_rich_log_tells_all(rich_fit: Identification) -> None:
     assert {one.parameter for one in rich_fit.verdicts if one.identifiable} == set(rich_fit.values)
     held = [one for one in rich_fit.verdicts if not one.identifiable]
     assert [one.parameter for one in held] == ["mass_kg"]
-    assert "inertia is lost in the force of friction" in held[0].because
+    assert "inertia is too small against friction to show" in held[0].because
     assert peak(rich_fit).startswith("stiction peak: seen; F_s / F_c = 1.")
 
 
@@ -151,7 +151,7 @@ def test_noise_of_the_position_is_said_to_bias_the_stribeck_term(
 ) -> None:
     log = rig(**lugre).moved(1500, 1000.0, force_noise_n=0.1, position_noise_m=2e-5)
     notes = identify(log, law="stribeck", lowpass_hz=200.0, starts=1).notes
-    assert any("draws F_s / F_c and v_s beyond their intervals" in note for note in notes)
+    assert any("biases F_s / F_c and v_s beyond their intervals" in note for note in notes)
 
 
 def test_identifiability_is_told_without_a_fit(rich: Log, rich_fit: Identification) -> None:

@@ -106,9 +106,9 @@ def test_refuses(write: Write, text: str | bytes, words: str) -> None:
 def test_refuses_what_is_no_file(tmp_path: Path) -> None:
     with pytest.raises(LogError, match=r"none\.csv: there is no such file"):
         read_log(tmp_path / "none.csv")
-    with pytest.raises(LogError, match="can not be read"):
+    with pytest.raises(LogError, match="cannot be read"):
         read_log(tmp_path)
-    with pytest.raises(LogError, match="can not be read"):
+    with pytest.raises(LogError, match="cannot be read"):
         read_log(Path("nul\0.csv"))
 
 
@@ -200,7 +200,7 @@ def test_lines_above_the_header_may_hold_anything(write: Write, above: str) -> N
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("\n" + table(), r"the header is an empty line; state as csv\.skip_rows"),
+        ("\n" + table(), r"the header is an empty line; set csv\.skip_rows"),
         ("made by a rig\n" + table(), r"csv\.skip_rows in a mapping leaves out lines"),
         (table().replace(",", "\t"), r'delimiter = "\\t"'),
         (table().replace(",", ";"), 'delimiter = ";"'),

@@ -158,7 +158,7 @@ def test_a_limit_of_the_address_space_counts() -> None:
     assert 0 < float(done.stdout) < 2**31
 
 
-# Claims that the file can not hold
+# Claims that the file cannot hold
 
 
 def test_hdf5_chunks_that_grow_beyond_their_claim(tmp_path: Path) -> None:
@@ -204,7 +204,7 @@ def test_mcap_chunks_that_hold_other_than_they_claim(tmp_path: Path) -> None:
     for claim in (size - 1, size + 1, 10**6):
         data[place : place + 8] = claim.to_bytes(8, "little")
         path.write_bytes(data)
-        with pytest.raises(LogError, match="the bytes of a chunk are not those that it states"):
+        with pytest.raises(LogError, match="size or checksum of a chunk does not match its bytes"):
             read_log(path)
     data[place : place + 8] = (2**60).to_bytes(8, "little")
     path.write_bytes(data)
@@ -215,12 +215,12 @@ def test_mcap_chunks_that_hold_other_than_they_claim(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        ("[" * 10**5 + "]" * 10**5, "is too deep"),
+        ("[" * 10**5 + "]" * 10**5, "is nested too deeply"),
         (
             '{"ten_letter":' * 200 + "1" + "}" * 200,
             "the path of a field has more than 1,000 characters",
         ),
-        ('{"a": 1', "a message is no JSON"),
+        ('{"a": 1', "a message is not readable JSON"),
         ('{"a": ' + "1" * 5000 + "}", "row 1: inf is not a measurement"),
     ],
 )
@@ -246,7 +246,7 @@ def test_tdms_lists_of_objects_count(tmp_path: Path) -> None:
             writer.write_segment(
                 [ChannelObject("Rig", f"c{c}", np.zeros(1), changed) for c in range(20)]
             )
-    with pytest.raises(LogError, match="with its segments it takes"):
+    with pytest.raises(LogError, match="with its segments it needs"):
         read_log(path, memory_bytes=100_000)
     with pytest.raises(LogError, match="column 'position_m' is missing"):
         read_log(path)
@@ -330,7 +330,7 @@ def test_a_log_that_changes_while_it_is_read_is_refused(tmp_path: Path) -> None:
     path, other = tmp_path / "motor.csv", tmp_path / "other.csv"
     small_csv(path)
     small_csv(other)
-    words = r"motor\.csv: has changed while it was read"
+    words = r"motor\.csv: changed while it was read"
     with digested(path) as digest:
         assert len(digest) == 64
     with pytest.raises(LogError, match=words), digested(path):

@@ -70,7 +70,7 @@ def test_further_channels_have_names_with_units() -> None:
         Log(**arrays(), channels={"pressure": np.ones(40)})
     with pytest.raises(LogError, match="channel 'force_n' is given twice"):
         Log(**arrays(), channels={"force_n": np.ones(40)})
-    with pytest.raises(LogError, match="no channel beside time"):
+    with pytest.raises(LogError, match="no channel besides time"):
         Log(t_s=np.arange(40.0))
 
 

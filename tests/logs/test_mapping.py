@@ -199,7 +199,7 @@ def keys(**changed: Any) -> dict[str, Any]:
         ({"channels": {"force": {"from": "drive"}}}, "'force': the name does not end with its"),
         ({"channels": {"t_s": {"from": "clock"}}}, r"time has a table of its own; write \[time\]"),
         ({"channels": {"force_n": 3}}, "channels.force_n: is no table"),
-        ({"channels": 3}, "channels: is no table"),
+        ({"channels": 3}, "channels: is not a table"),
         ({"tiem": {}}, "tiem: is not a known key; did you mean time"),
         ({"time": {"form": "t"}}, "time.form: is not a known key; did you mean from"),
         ({"csv": {"delimiter": ";;"}}, "csv.delimiter"),

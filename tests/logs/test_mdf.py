@@ -80,7 +80,7 @@ def test_the_clock_is_converted_by_our_own_code(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("counts", "unit", "words"),
-    [(2, "rad", "is no time"), (1, "furlong", "'furlong', which is no known unit")],
+    [(2, "rad", "is not time"), (1, "furlong", "'furlong', which is not a known unit")],
 )
 def test_a_clock_that_is_none(tmp_path: Path, counts: int, unit: str, words: str) -> None:
     maker = Maker()
@@ -258,7 +258,7 @@ def test_more_or_fewer_records_than_claimed(tmp_path: Path) -> None:
         read(path)
     path = unsorted_file(tmp_path / "other.mf4", 1)
     path.write_bytes(path.read_bytes().replace(b"\x09\xff\xff", b"\x08\xff\xff"))
-    with pytest.raises(LogError, match="holds a record of a group 8 that is not"):
+    with pytest.raises(LogError, match="holds a record of an unknown group 8"):
         read(path)
 
 
@@ -266,7 +266,7 @@ def test_records_by_columns_are_refused(tmp_path: Path) -> None:
     maker = Maker()
     group = maker.group(maker.channel("a"), 1, 8)
     path = maker.finish(tmp_path / "columns.mf4", (group, maker.block("DV", [], bytes(8)), 0))
-    with pytest.raises(LogError, match="keeps its records by columns"):
+    with pytest.raises(LogError, match="stores its records by column"):
         read(path)
 
 
@@ -285,9 +285,9 @@ def packed_file(path: Path, claimed: int, way: int = 0) -> Path:
 def test_packed_blocks_hold_what_they_claim(tmp_path: Path) -> None:
     assert values_of(packed_file(tmp_path / "good.mf4", 800), "a") == [[0.0] * 100]
     for claimed in (0, 799, 801, 10**6):
-        with pytest.raises(LogError, match=rf"claims {claimed} bytes, and holds more or fewer"):
+        with pytest.raises(LogError, match=rf"claims {claimed} bytes, but holds more or fewer"):
             read(packed_file(tmp_path / "bad.mf4", claimed))
-    with pytest.raises(LogError, match="is packed in way 2, which is not read"):
+    with pytest.raises(LogError, match="is packed by method 2, which is not supported"):
         read(packed_file(tmp_path / "new.mf4", 800, way=2))
 
 
@@ -296,7 +296,7 @@ def test_packed_blocks_hold_what_they_claim(tmp_path: Path) -> None:
 
 def test_mdf_3_is_refused(tmp_path: Path) -> None:
     path = write(tmp_path, [signal("position", T_S, "m")], version="3.30")
-    with pytest.raises(LogError, match=r"is MDF version 3\.\d+; only 4 is read: convert it"):
+    with pytest.raises(LogError, match=r"is MDF version 3\.\d+; only version 4 is read: convert"):
         read_log(path)
 
 

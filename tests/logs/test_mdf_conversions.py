@@ -123,7 +123,7 @@ def force_of(path: Path) -> np.ndarray:
 
 
 def why_not(path: Path) -> str:
-    """Return why the force can not be read."""
+    """Return why the force cannot be read."""
     raw = read_mdf(path, Budget(path.name, 1e8))
     assert raw.channels == {}
     return raw.unreadable["force"]
@@ -157,13 +157,13 @@ def test_a_formula_that_is_not_understood_is_shown(tmp_path: Path) -> None:
 
 def test_texts_are_no_numbers(tmp_path: Path) -> None:
     path = write(tmp_path, [converted(INTEGERS, texts(HALF, v7=b"a fault"))])
-    assert (
-        why_not(path) == "row 8: its raw value 7 stands for the text 'a fault', which is no number"
-    )
+    said = why_not(path)
+    assert said == "row 8: its raw value 7 stands for the text 'a fault', which is not a number"
     path = write(tmp_path, [converted(INTEGERS[:7], texts(b"", v7=b"a fault"))])
-    assert "stands for nothing, which is no number" in why_not(path)
+    assert "stands for nothing, which is not a number" in why_not(path)
     path = write(tmp_path, [converted(INTEGERS, range_texts(b"low", (5, 9, HALF)))])
-    assert why_not(path) == "row 1: its raw value 0 stands for the text 'low', which is no number"
+    said = why_not(path)
+    assert said == "row 1: its raw value 0 stands for the text 'low', which is not a number"
 
 
 def test_a_formula_behind_a_table(tmp_path: Path) -> None:
@@ -185,17 +185,17 @@ def test_tables_that_can_be_read_in_two_ways_are_refused(tmp_path: Path) -> None
     path = write(tmp_path, [converted(INTEGERS, table("TABI", raw=[3, 1], phys=[0, 1]))])
     assert why_not(path) == "the keys of its table do not ascend"
     path = write(tmp_path, [converted(INTEGERS, ranges(0, (0, 4, 1), (3, 6, 2)))])
-    assert why_not(path) == "the ranges of its table are not apart"
+    assert why_not(path) == "the ranges of its table overlap"
     path = write(tmp_path, [converted(INTEGERS, ranges(0, (0, 4, 1), (4, 6, 2)))])
     assert "row 5: its raw value 4 is at the end of a range" in why_not(path)
     path = write(tmp_path, [converted(INTEGERS, texts(HALF, v1=HALF, v01=HALF))])
-    assert why_not(path) == "its table holds a key twice"
+    assert why_not(path) == "its table holds the same key twice"
 
 
 def test_raw_values_that_are_none_get_no_default(tmp_path: Path) -> None:
     raw = np.where(INTEGERS == 2, np.nan, REALS)
     path = write(tmp_path, [converted(raw, ranges(0, (-1, 4, 1)))])
-    assert why_not(path) == "row 3: its raw value nan is none"
+    assert why_not(path) == "row 3: its raw value nan is not a number"
     nearest = Table(np.array([0.0, 1.0]), np.array([5.0, 6.0]), interpolated=False)
     assert np.isnan(nearest(raw)[2]) and not np.isnan(nearest(raw)[3])
 

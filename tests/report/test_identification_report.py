@@ -131,7 +131,7 @@ def test_every_parameter_has_its_row(found, page):
     assert f"{value} ± {error}" in coulomb
     assert coulomb.count(" to ") == 2  # from the errors, and from the profile
     mass = next(row for row in rows if row.strip().startswith("mass"))
-    assert "held at 0: inertia is lost" in mass
+    assert "held at 0: inertia is too small" in mass
 
 
 def test_every_verdict_that_is_negative_has_its_reason_and_remedy(simple, simple_page):
@@ -214,7 +214,7 @@ def test_what_can_not_be_drawn_is_left_out_with_a_reason(simple_page):
 
 def test_a_fit_that_was_stopped_says_so(simple):
     text = identification_report(replace(simple, complete=False))
-    assert "The fit was stopped before it was done" in text
+    assert "The fit was stopped before it finished" in text
 
 
 def test_a_stiction_ratio_that_was_held_is_no_peak():
@@ -247,7 +247,7 @@ def test_a_closed_loop_names_its_controller():
 def test_saved_whole_or_not_at_all(simple, simple_page, tmp_path):
     save_identification_report(tmp_path / "report.html", simple)
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == simple_page
-    with pytest.raises(OutputError, match="can not be written"):
+    with pytest.raises(OutputError, match="cannot be written"):
         save_identification_report(tmp_path / "report.html" / "report.html", simple)
     assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
 

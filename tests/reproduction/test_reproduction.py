@@ -190,7 +190,7 @@ def test_the_page_shows_in_a_browser(out, tmp_path):
 def test_an_unwritable_folder_is_told_and_left_alone(tmp_path):
     file = tmp_path / "file"
     file.write_text("kept")
-    with pytest.raises(OutputError, match="can not be written"):
+    with pytest.raises(OutputError, match="cannot be written"):
         reproduce(file / "inside")
     assert file.read_text() == "kept"
 

@@ -117,7 +117,7 @@ def test_an_unfinished_survey_is_not_drawn(tmp_path):
 
 def test_a_full_disk_tells_how_to_go_on(tmp_path, monkeypatch):
     def full(path, _):
-        raise OutputError(f"{path}: can not be written: No space left on device; make room")
+        raise OutputError(f"{path}: cannot be written: No space left on device; make room")
 
     monkeypatch.setattr("breakaway.ask.durable.journal.write_inside", full)
     with pytest.raises(OutputError, match="what is finished stays: resume it to go on"):

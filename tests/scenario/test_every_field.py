@@ -1,4 +1,4 @@
-"""Every field refuses what it can not use by name, value, range and remedy, and nothing else.
+"""Every field refuses what it cannot use by name, value, range and remedy, and nothing else.
 
 The fields are found by walking the models (conftest.py), so that a new one is covered at once.
 """

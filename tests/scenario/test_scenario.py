@@ -161,7 +161,7 @@ def test_save_and_load(paper, vibrating, tmp_path):
 
 def test_saving_where_it_can_not_be(paper, tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(bk.OutputError, match="can not be written"):
+    with pytest.raises(bk.OutputError, match="cannot be written"):
         bk.save_scenario(paper, tmp_path / "file" / "scenario.toml")
 
 
@@ -170,7 +170,7 @@ def test_loading_what_is_not_there(tmp_path):
         bk.load_scenario("paper_as_computd")
     with pytest.raises(bk.ScenarioError, match=r"nor a preset|neither a file nor a preset"):
         bk.load_scenario(tmp_path / "none.toml")
-    with pytest.raises(bk.ScenarioError, match="can not be read as text"):
+    with pytest.raises(bk.ScenarioError, match="cannot be read as text"):
         bk.load_scenario(tmp_path)
 
 
@@ -180,7 +180,7 @@ def test_loading_what_is_not_a_scenario(paper, tmp_path):
     with pytest.raises(bk.ScenarioError, match=r"broken\.toml: is not TOML: "):
         bk.load_scenario(path)
     path.write_bytes(b"name = '\xff'")
-    with pytest.raises(bk.ScenarioError, match=r"broken\.toml: can not be read as text"):
+    with pytest.raises(bk.ScenarioError, match=r"broken\.toml: cannot be read as text"):
         bk.load_scenario(path)
     path.write_text(scenario_toml(paper).replace("stiction_n", "stictin_n"))
     with pytest.raises(bk.ScenarioError) as caught:

@@ -96,8 +96,8 @@ def test_only_lugre_drifts_out_below_breakaway(tmp_path, short):
     done = run_study(study, out=tmp_path)
     assert verdicts(done) == {"released": "only lugre", "final_position_m": "only lugre"}
     assert done.summary["result"][0].startswith(
-        "only lugre: pulses releases more often than constant, which nothing else that was asked "
-        "shows: it may be a property of the model alone"
+        "only lugre: pulses releases more often than constant, and nothing else that was asked "
+        "shows it: it may be a property of this model only"
     )
     conclusion = done.summary["tables"]["conclusions"][0]
     assert (conclusion["said_by"], conclusion["shown_by_all"]) == ("lugre", None)
@@ -331,21 +331,21 @@ def test_what_is_not_there_is_not_compared():
 
 RUNS = {"runs": 1}
 WRONG = [
-    ({"laws": ["lugre"]}, {}, "agreement.laws: 'lugre' alone agrees with itself; give two or more"),
-    ({"laws": ["lugre", "lugre"]}, {}, "agreement.laws: 'lugre' is there twice"),
+    ({"laws": ["lugre"]}, {}, "agreement.laws: 'lugre' alone cannot disagree; give two or more"),
+    ({"laws": ["lugre", "lugre"]}, {}, "agreement.laws: 'lugre' is given twice"),
     ({"laws": ["lugre", "lurge"]}, {}, "'lurge' is not one of"),
     ({"variants": FORCES[:1]}, {}, "variants: 1 is not a comparison; give two or more"),
-    ({"variants": [FORCES[0], FORCES[0]]}, {}, "variants: 'weak' is there twice"),
+    ({"variants": [FORCES[0], FORCES[0]]}, {}, "variants: 'weak' is given twice"),
     ({"variants": [FORCES[0], {"name": "twin"}]}, {}, "'weak' and 'twin' are the same"),
     ({"variants": [FORCES[0], {"name": "b", "changes": {"joint.law": "gms"}}]}, {},
      "joint.law is the same for all variants; name laws in agreement.laws"),
-    ({"variants": [FORCES[0], {"name": "b", "changes": {"seed": 3}}]}, {}, "seed is none of them"),
+    ({"variants": [FORCES[0], {"name": "b", "changes": {"seed": 3}}]}, {}, "cannot change seed"),
     ({"variants": [FORCES[0], {"name": "b", "changes": {"part.mas_kg": 3.0}}]}, {},
      "agreement.variants.b.changes: part.mas_kg: is not a known key; did you mean mass_kg?"),
     ({"numbers": {"gms": {"elements": 3}}}, {},
      "agreement.numbers.gms.elements: 3 is not >= 4"),
     ({"numbers": {"gms": {"elemnts": 5}}}, {}, "did you mean elements?"),
-    ({"numbers": {"two_region": {}}}, {}, "numbers.two_region: is none of the laws"),
+    ({"numbers": {"two_region": {}}}, {}, "numbers.two_region: is not one of the laws"),
     ({"relevant": {"peak_forc_n": 1.0}}, {}, "agreement.relevant: 'peak_forc_n' is not a metric"),
     ({"relevant": {"released": -1.0}}, {}, "-1.0 is not >= 0"),
     ({"disturbances": ["joint_force", "friction_level"]}, {}, "disturbance.var is 0 in every"),

@@ -144,7 +144,7 @@ def test_a_wrong_joint_file_is_named(folder: Path, content: str | None, words: s
 
 def test_a_joint_file_without_draws_is_refused(folder: Path, joint: JointFile) -> None:
     joint.model_copy(update={"draws": None}).save(folder / "parts" / "joint.toml")
-    with pytest.raises((StudyError, ScenarioError), match="has no draws, so no spread is known"):
+    with pytest.raises((StudyError, ScenarioError), match="has no draws, so its spread is not"):
         load(folder, TEXT)
 
 

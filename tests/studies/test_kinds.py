@@ -295,7 +295,7 @@ def test_draws_of_the_disturbance_are_an_input(tmp_path, quick):
     assert found["disturbance draws"]["total_order"] > 0.7
     assert abs(found["part.mass_kg"]["total_order"]) < 0.01
     assert summary["without_indices"] == {
-        "time_to_release_s": "not there in 256 of 256 runs",
+        "time_to_release_s": "missing in 256 of 256 runs",
         "impacts": "the same in all runs",
     }
     runs = {b: set(done.scan(["run_index"], dataset.field("block") == b)["run_index"].to_pylist())

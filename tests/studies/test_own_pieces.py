@@ -244,7 +244,7 @@ def with_identity(manifest: dict) -> dict:
         ({"libraries": []}, "libraries: Input should be a valid dictionary"),
         ({"identity": 5}, "identity: Input should be a valid string"),
         ({"format": "2"}, "format: Input should be a valid integer"),
-        ({"seed": 1}, "was changed: its identity is not that of its content"),
+        ({"seed": 1}, "was changed: its identity does not match its content"),
         ({"asked": {"kind": "sweep", "name": 1}}, "asked.name: Input should be a valid string"),
     ],
 )
@@ -279,7 +279,7 @@ def test_a_study_of_other_types_is_no_crash(asked, whole, changes, words):
 @pytest.mark.parametrize("text", ["[]", "3", "null", "[" * 50_000, "not JSON", '{"asked": []}'])
 def test_what_is_no_manifest_is_no_crash(whole, text):
     (whole / "manifest.json").write_text(text)
-    with pytest.raises(StudyError, match=r"manifest\.json: can not be read as a manifest: "):
+    with pytest.raises(StudyError, match=r"manifest\.json: cannot be read as a manifest: "):
         open_study(whole)
 
 
@@ -291,7 +291,7 @@ def test_another_format_is_refused(asked, whole):
     for use in (lambda: open_study(whole), lambda: run_study(asked, out=whole, resume=True)):
         with pytest.raises(
             StudyError,
-            match=rf"has the format {FORMAT - 1}, not {FORMAT}; open it with the breakaway that "
-            r"wrote it, 0\.0\.1, or begin again in another folder",
+            match=rf"has the format {FORMAT - 1}, not {FORMAT}; open it with breakaway 0\.0\.1, "
+            r"which wrote it, or start again in another folder",
         ):
             use()

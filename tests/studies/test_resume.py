@@ -160,7 +160,7 @@ def test_ctrl_c_keeps_finished_pieces(robustness, whole, tmp_path):
     assert (done.finished, len(done.piece_files)) == (False, 10)
     assert repr(done) == "<study 'study', robustness, not finished, 10 pieces>"
     assert done.dataset.count_rows() == 100
-    with pytest.raises(StudyError, match="is not finished, 10 pieces are; go on with --resume"):
+    with pytest.raises(StudyError, match=r"is not finished \(10 pieces are\); go on with --resume"):
         _ = done.summary
     found = []
     run_study(robustness, out=folder, resume=True, progress=lambda at: found.append(at.runs_found))
@@ -298,7 +298,7 @@ def test_a_full_disk_keeps_what_is_finished(study_file, whole, tmp_path, full_at
     assert process.returncode != 0
     last = stderr.strip().splitlines()[-1]
     assert last.startswith("breakaway.errors.OutputError: ")
-    assert "can not be written" in last
+    assert "cannot be written" in last
     assert last.endswith("what is finished stays: resume it to go on")
     kept = contents(folder)
     digests = set(kept.pop(DIGESTS).split(b"\n"))
@@ -324,7 +324,7 @@ def test_a_folder_that_can_not_take_the_manifest_is_not_left_behind(
 def test_a_place_that_is_no_folder_is_refused(robustness, tmp_path):
     (tmp_path / "file").write_text("")
     for place in (tmp_path / "file", tmp_path / "file" / "out"):
-        with pytest.raises(OutputError, match=r"can not be written: (is a file|Not a dir)"):
+        with pytest.raises(OutputError, match=r"cannot be written: (is a file|Not a dir)"):
             run_study(robustness, out=place)
     assert (tmp_path / "file").read_text() == ""
 
@@ -333,7 +333,7 @@ def test_a_place_that_is_no_folder_is_refused(robustness, tmp_path):
 def test_a_read_only_folder_is_refused(robustness, tmp_path):
     folder = tmp_path / "locked"
     folder.mkdir(mode=0o500)
-    with pytest.raises(OutputError, match="can not be written: Permission denied"):
+    with pytest.raises(OutputError, match="cannot be written: Permission denied"):
         run_study(robustness, out=folder)
     assert list(folder.iterdir()) == []
 

@@ -1,4 +1,4 @@
-"""What can not be tuned is said before anything runs: field, value, range, remedy."""
+"""What cannot be tuned is said before anything runs: field, value, range, remedy."""
 
 import sys
 
@@ -18,7 +18,7 @@ SPAN = {"low": 0.01, "high": 0.04}
         ({"tune": {"actuator": SPAN}}, "tune.actuator: is not a number of the method"),
         ({"tune": {}}, "tune"),
         ({"tune": {SPEED: {"low": 0.04, "high": 0.01}}}, "low: 0.04 is not < high = 0.01; swap"),
-        ({"tune": {SPEED: {"low": 0.0, "high": 1.0, "log": True}}}, "logarithms need that"),
+        ({"tune": {SPEED: {"low": 0.0, "high": 1.0, "log": True}}}, "logarithmic scale needs that"),
         (
             {"tune": {SPEED: {"low": -1.0, "high": 1.0}}},
             "tune.controller.speed_m_per_s.low: -1.0 is",
@@ -31,7 +31,7 @@ SPAN = {"low": 0.01, "high": 0.04}
         ({"objectives": []}, "objectives"),
         ({"objectives": ["strict_shar"]}, "objectives[0]: 'strict_shar' is not a score; did you"),
         ({"objectives": ["strict_share"] * 2}, "objectives: 'strict_share' is named twice"),
-        ({"objectives": ["median_stack_loss_w"]}, "is of a piezo, which the method does not have"),
+        ({"objectives": ["median_stack_loss_w"]}, "needs a piezo, which the method does not have"),
         ({"constraints": {"strict": {"at_least": 0.5}}}, "constraints.strict: 'strict' is not"),
         ({"constraints": {"strict_share": {"at_most": 0.5}}}, "give at_least = a number"),
         ({"tune": {SPEED: 3.0}}, "3.0 is not a table"),
@@ -68,7 +68,7 @@ def test_unseen_parts_must_be_unseen(feed, first, last):
 
 
 def test_what_a_method_is_told_can_not_be_tuned(feed):
-    with pytest.raises(bk.StudyError, match=r"tune\.controller\.travel_m: is told to the method"):
+    with pytest.raises(bk.StudyError, match=r"tune\.controller\.travel_m: is set for each part"):
         feed(method="force_ramp", tune={"controller.travel_m": SPAN})
 
 
@@ -107,7 +107,7 @@ def test_when_all_is_refused_that_is_the_result(feed, tmp_path):
     )
     done = bk.tune(tuning, out=tmp_path)
     assert done.summary["result"][0].startswith(
-        "every one of 2 evaluations was refused, the last one: "
+        "all 2 evaluations were refused, the last one with: "
     )
 
 

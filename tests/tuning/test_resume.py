@@ -121,7 +121,7 @@ def test_ctrl_c_keeps_finished_trials(asked, whole, tmp_path, after):
         bk.tune(asked, out=folder, progress=stop)
     done = bk.open_tuning(folder)
     assert not done.finished
-    with pytest.raises(bk.StudyError, match=r"is not finished, .* go on with --resume"):
+    with pytest.raises(bk.StudyError, match=r"is not finished .* go on with --resume"):
         _ = done.summary
     found = []
     bk.tune(asked, out=folder, resume=True, progress=lambda at: found.append(at))
@@ -238,7 +238,7 @@ def test_a_study_is_no_tuning(tmp_path):
         runs=1,
     )
     run_study(study, out=tmp_path / "study")
-    with pytest.raises(bk.StudyError, match="is of a study, not of a tuning; open it with open_s"):
+    with pytest.raises(bk.StudyError, match="belongs to a study, not to a tuning; open it with"):
         bk.open_tuning(tmp_path / "study")
 
 
@@ -255,7 +255,7 @@ def test_a_full_disk_keeps_what_is_finished(asked, whole, tmp_path):
             resource.setrlimit(resource.RLIMIT_FSIZE, (size + 40, before[1]))
 
     try:
-        with pytest.raises(bk.OutputError, match=r"can not be written.*; what is finished stays"):
+        with pytest.raises(bk.OutputError, match=r"cannot be written.*; what is finished stays"):
             bk.tune(asked, out=folder, progress=fill)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)

@@ -1,7 +1,7 @@
 """Arguments of public functions: what is of a wrong kind is refused where it comes in.
 
 The annotations of a function say what it takes, and nothing else does: `check_arguments` reads
-them. What they can not say, such as a range, is left to the function.
+them. What they cannot say, such as a range, is left to the function.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ Refusal = type[BreakawayError]
 """Class of the error that refuses an argument."""
 
 REMEDIES: dict[str, tuple[Refusal, str]] = {
-    "Identification": (LogError, "identify gives one"),
-    "InertiaFrictionFit": (LogError, "identify_inertia_friction gives one"),
-    "Log": (LogError, "read_log gives that of a file"),
-    "Method": (ScenarioError, "load_method gives that of a preset or a file"),
-    "PartPopulation": (ScenarioError, "load_population gives that of a preset or a file"),
-    "SweepStudy": (StudyError, "load_study gives that of a file"),
-    "Scenario": (ScenarioError, "load_scenario gives that of a preset or a file"),
-    "Tuning": (StudyError, "load_tuning gives that of a file"),
+    "Identification": (LogError, "identify returns one"),
+    "InertiaFrictionFit": (LogError, "identify_inertia_friction returns one"),
+    "Log": (LogError, "read one from a file with read_log"),
+    "Method": (ScenarioError, "load a preset or a file with load_method"),
+    "PartPopulation": (ScenarioError, "load a preset or a file with load_population"),
+    "SweepStudy": (StudyError, "load one from a file with load_study"),
+    "Scenario": (ScenarioError, "load a preset or a file with load_scenario"),
+    "Tuning": (StudyError, "load one from a file with load_tuning"),
 }
 """Name of a class -> the error where something else is given, and how to come by one."""
 
@@ -204,7 +204,7 @@ def run_numbers(runs: int | range, *, fewest: int = 1, most: int | None = None) 
     if not consecutive or count < fewest or (most is not None and count > most):
         raise StudyError(
             f"runs: {shown(runs)} is not a whole number {_between(fewest, most)}, nor a range of "
-            "as many, such as range(100, 200)"
+            "that length, such as range(100, 200)"
         )
     return numbers
 

@@ -26,7 +26,7 @@ def free_memory_bytes() -> float:
 
 
 def check_fits(field: str, count: int, bytes_each: float, remedy: str) -> None:
-    """Refuse what can not fit into the free memory, before any of it is taken.
+    """Refuse what cannot fit into the free memory, before any of it is taken.
 
     Parameters
     ----------
@@ -49,14 +49,14 @@ def check_fits(field: str, count: int, bytes_each: float, remedy: str) -> None:
     >>> check_fits("runs", 10**15, 100.0, "run them in batches")
     Traceback (most recent call last):
         ...
-    breakaway.errors.StudyError: runs: 1,000,000,000,000,000 take 93132257.5 GiB of memory, ...
+    breakaway.errors.StudyError: runs: 1,000,000,000,000,000 need 93132257.5 GiB of memory, ...
 
     """
     needed = count * bytes_each
     if needed > ALWAYS_BYTES and needed > (free := free_memory_bytes()):
         raise StudyError(
-            f"{field}: {count:,} take {needed / 2**30:.1f} GiB of memory, and {free / 2**30:.1f} "
-            f"GiB are free; {remedy}"
+            f"{field}: {count:,} need {needed / 2**30:.1f} GiB of memory, but only "
+            f"{free / 2**30:.1f} GiB are free; {remedy}"
         )
 
 

@@ -34,7 +34,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     Raises
     ------
     OutputError
-        The folder can not be made or not be written to, or the disk is full.
+        The folder cannot be made or written to, or the disk is full.
 
     """
     try:
@@ -55,7 +55,7 @@ def write_inside(path: Path, content: bytes) -> None:
     Raises
     ------
     OutputError
-        The file is a symbolic link, the folder can not be written to, or the disk is full.
+        The file is a symbolic link, the folder cannot be written to, or the disk is full.
 
     """
     refuse_links(path)
@@ -68,7 +68,7 @@ def append_inside(path: Path, line: bytes) -> None:
     Raises
     ------
     OutputError
-        The file is a symbolic link, the disk is full, or it can not be written; it is as it was
+        The file is a symbolic link, the disk is full, or it cannot be written; it is as it was
         before.
 
     """
@@ -79,7 +79,7 @@ def append_inside(path: Path, line: bytes) -> None:
             before = os.fstat(descriptor).st_size
             try:
                 if os.write(descriptor, line) != len(line):
-                    raise OSError("is full")  # noqa: TRY301 - handled as all that fails here
+                    raise OSError("the disk is full")  # noqa: TRY301 - handled as any failure
                 os.fsync(descriptor)
             except BaseException:
                 with suppress(OSError):
@@ -96,7 +96,7 @@ def open_inside(path: Path) -> Iterator[int]:
     Raises
     ------
     OSError
-        It is a link or no regular file, or can not be opened.
+        It is a link or not a regular file, or cannot be opened.
 
     """
     flags = os.O_RDWR | os.O_APPEND | os.O_CREAT
@@ -105,7 +105,7 @@ def open_inside(path: Path) -> Iterator[int]:
     descriptor = os.open(path, flags, 0o666)
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise OSError("is no regular file")
+            raise OSError("is not a regular file")
         yield descriptor
     finally:
         os.close(descriptor)
@@ -117,14 +117,14 @@ def remove_inside(path: Path) -> None:
     Raises
     ------
     OutputError
-        It is a symbolic link, or can not be removed.
+        It is a symbolic link, or cannot be removed.
 
     """
     refuse_links(path)
     try:
         path.unlink(missing_ok=True)
     except OSError as error:
-        raise OutputError(f"{path}: can not be removed: {error.strerror or error}") from None
+        raise OutputError(f"{path}: cannot be removed: {error.strerror or error}") from None
 
 
 def remove_leftovers(folder: Path) -> None:
@@ -165,7 +165,7 @@ def refuse_to_overwrite(source: Path, target: Path) -> None:
 
     """
     if is_there(source) and is_there(target) and source.samefile(target):
-        raise OutputError(f"{target}: is what was read; give another place for the result")
+        raise OutputError(f"{target}: is the file that was read; give another place for the result")
 
 
 @contextmanager
@@ -178,7 +178,7 @@ def output_folder(folder: Path, kind: Kind, names: Collection[str] = ()) -> Iter
     Raises
     ------
     OutputError
-        The folder can not be written to, or holds a result of another kind; a name is taken by a
+        The folder cannot be written to, or holds a result of another kind; a name is taken by a
         folder, a symbolic link, or a file that is of no result of this kind.
 
     """
@@ -229,11 +229,11 @@ def claim(folder: Path, kind: Kind, names: Collection[str] = ()) -> None:
 
 
 def not_written(path: Path, error: Exception) -> OutputError:
-    """Say that a place can not be written, and why."""
+    """Say that a place cannot be written, and why."""
     reason = getattr(error, "strerror", None) or str(error)
     if isinstance(error, FileExistsError):
         reason = "is a file, not a folder"
-    return OutputError(f"{path}: can not be written: {reason}; give a folder that you can write to")
+    return OutputError(f"{path}: cannot be written: {reason}; give a folder that you can write to")
 
 
 def _mode(path: Path) -> int:

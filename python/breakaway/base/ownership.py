@@ -80,8 +80,8 @@ def refuse_files_of_others(folder: Path, kind: Kind, names: Iterable[str]) -> No
     taken = [name for name in names if is_there(folder / name)]
     if taken and not kind.is_in(folder):
         raise OutputError(
-            f"{folder / taken[0]}: is there already, and no {kind.marker} of {kind.name} beside "
-            "it, so it is not replaced; move it away, or give another folder"
+            f"{folder / taken[0]}: already exists, and there is no {kind.marker} of {kind.name} "
+            "beside it, so it is not replaced; move it away, or give another folder"
         )
 
 

@@ -45,7 +45,7 @@ def open_regular(path: Path) -> BufferedReader:
     FileNotFoundError
         There is nothing at this path.
     OSError
-        It is no regular file, or can not be read; the text of the error says which.
+        It is not a regular file, or cannot be read; the text of the error says which.
 
     """
     _check_regular(os.stat(path).st_mode)  # noqa: PTH116 - a device is not to be opened at all
@@ -65,8 +65,8 @@ def _check_regular(mode: int) -> None:
         raise OSError(f"is {kind}, not a file; give the path of a regular file")
 
 
-# Methods of Path raise where a name is too long, or a folder on the way can not be looked into; for
-# these there is nothing, and whatever opens or writes the place then says why it can not.
+# Methods of Path raise where a name is too long, or a folder on the way cannot be looked into; for
+# these there is nothing, and whatever opens or writes the place then says why it cannot.
 
 
 def is_there(path: Path) -> bool:
@@ -97,7 +97,7 @@ def read_text(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
     FileNotFoundError
         There is nothing at this path.
     OSError
-        It is no regular file, or can not be read.
+        It is not a regular file, or cannot be read.
     ValueError
         It is larger than ``most_bytes``, or not UTF-8.
 
@@ -105,7 +105,7 @@ def read_text(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
     with open_regular(path) as file:
         content = file.read(most_bytes + 1)
     if len(content) > most_bytes:
-        raise ValueError(f"has more than {most_bytes} bytes, the most that is read")
+        raise ValueError(f"has more than {most_bytes} bytes, the limit")
     return content.decode("utf-8")
 
 
@@ -124,7 +124,7 @@ def parse_toml(text: str) -> dict[str, Any]:
     >>> parse_toml("a" + ".a" * 40 + " = 1")
     Traceback (most recent call last):
         ...
-    ValueError: line 1: a key of more than 32 parts; write it in less
+    ValueError: line 1: a key of more than 32 parts; make it shorter
 
     """
     _check_limits(text)
@@ -132,7 +132,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         values = tomllib.loads(text)
         _check_keys(values)
     except RecursionError:  # not to be had within the limits
-        raise ValueError("tables or lists are too deep within each other") from None
+        raise ValueError("tables or lists are nested too deeply") from None
     return values
 
 
@@ -177,7 +177,7 @@ def _check_limits(text: str) -> None:
             case "[" | "{":
                 depth, dots = depth + 1, 0
                 if depth > DEEPEST:
-                    over = f"more than {DEEPEST} tables or lists within each other"
+                    over = f"more than {DEEPEST} nested tables or lists"
             case "]" | "}":
                 depth, dots = depth - 1, 0
             case ".":
@@ -196,7 +196,7 @@ def _check_limits(text: str) -> None:
                 if words > MOST_WORDS:
                     over = f"more than {MOST_WORDS} keys, numbers and texts"
         if over:
-            raise ValueError(f"line {line}: {over}; write it in less")
+            raise ValueError(f"line {line}: {over}; make it shorter")
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -207,7 +207,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     FileNotFoundError
         There is nothing at this path.
     OSError, ValueError
-        It can not be read, is not TOML, or goes beyond a limit.
+        It cannot be read, is not TOML, or goes beyond a limit.
 
     """
     return parse_toml(read_text(path))
@@ -232,7 +232,7 @@ def text_of(
     Raises
     ------
     BreakawayError
-        Of the kind given: there is no such file, it is no regular file, can not be read, is too
+        Of the kind given: there is no such file, it is not a regular file, cannot be read, is too
         large, is not UTF-8, or starts with a byte order mark.
 
     """
@@ -241,7 +241,7 @@ def text_of(
     except FileNotFoundError:
         raise kind(f"{path}: {missing}") from None
     except (OSError, ValueError) as error:
-        raise kind(f"{path}: can not be read as text: {why(error)}") from None
+        raise kind(f"{path}: cannot be read as text: {why(error)}") from None
     if text.startswith("\ufeff"):
         raise kind(f"{path}: starts with a byte order mark; save it as plain UTF-8")
     return text
@@ -275,10 +275,10 @@ def read_json(path: Path, most_bytes: int) -> Any:  # noqa: ANN401 - any JSON
     FileNotFoundError
         There is nothing at this path.
     OSError, ValueError
-        It can not be read, is larger than ``most_bytes``, or not JSON.
+        It cannot be read, is larger than ``most_bytes``, or not JSON.
 
     """
     try:
         return json.loads(read_text(path, most_bytes))
     except RecursionError:
-        raise ValueError("lists are too deep within each other") from None
+        raise ValueError("lists are nested too deeply") from None

@@ -45,7 +45,7 @@ EPILOG = "\n\n".join(
                 "0    done; a run that diverges is no error",
                 "1    unexpected: a fault of breakaway",
                 "2    invalid input: command line, file or log",
-                "3    output can not be written",
+                "3    output cannot be written",
                 "4    not stable, and --require-stable was given",
                 "130  interrupted",
             ],

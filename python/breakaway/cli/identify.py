@@ -55,7 +55,7 @@ def identify(
     Without --law: mass, Coulomb and viscous friction by regression, once with
     equal friction in both directions and once with separate levels for each.
     With --law: that law is fitted by simulation, with intervals, and with what
-    the log can not tell. Ctrl-C ends a fit and shows the best so far.
+    the log cannot tell. Ctrl-C ends a fit and shows the best so far.
     """
     if out is not None:
         _check_target(log, out)
@@ -276,7 +276,7 @@ def _check_target(log: Path, out: Path) -> None:
     refuse_to_overwrite(log, out)
     if not is_folder(out.parent):
         reason = "Not a directory" if is_there(out.parent) else "its folder is missing"
-        raise OutputError(f"{out}: can not be written: {reason}")
+        raise OutputError(f"{out}: cannot be written: {reason}")
     if is_file(out):
         try:
             JointFile.load(out)

@@ -23,7 +23,7 @@ def measured(
     Raises
     ------
     LogError
-        The log can not be read, or does not fit the options.
+        The log cannot be read, or does not fit the options.
 
     """
     from breakaway.measure.logs import read_log

@@ -40,7 +40,7 @@ class Overlay:
         return residual_n(self.scenario.joint, self.scenario.part.mass_kg)
 
     def from_scenario(self) -> dict[str, tuple[float, str]]:
-        """Fields that the scenario gave, because the log can not tell; with the reason."""
+        """Fields that the scenario gave, because the log cannot tell; with the reason."""
         found = {
             field: (_value(self.scenario, field), reason)
             for field, reason in self.joint_file.not_identified.items()
@@ -135,13 +135,13 @@ def overlay_of(path: Path, scenario: Scenario) -> Overlay:
     Raises
     ------
     ScenarioError
-        As `breakaway.lay_over`, or the controller can not be designed for the joint.
+        As `breakaway.lay_over`, or the controller cannot be designed for the joint.
 
     """
     joint_file = JointFile.load(path)
     changed = lay_file_over(scenario, joint_file, str(path))
     try:
-        resolve(changed)  # finds what can not be designed while the joint file can be named
+        resolve(changed)  # finds what cannot be designed while the joint file can be named
     except ScenarioError as error:
         raise ScenarioError(f"{path} laid over {scenario.name}: {error}") from None
     return Overlay(path, joint_file, changed)

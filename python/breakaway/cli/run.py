@@ -94,7 +94,7 @@ def _simulate(scenario: Scenario, out: Path | None) -> tuple[Run, list[Path]]:
             return simulate(scenario), []
     from breakaway.show.run_files import written_run
 
-    with busy(what), written_run(out) as write:  # a folder that can not be written fails now
+    with busy(what), written_run(out) as write:  # a folder that cannot be written fails now
         finished = simulate(scenario)
         return finished, write(finished)
 

@@ -28,7 +28,7 @@ def say(*parts: str | Sheet) -> None:
     Raises
     ------
     OutputError
-        The standard output can not be written to, such as on a full disk.
+        The standard output cannot be written to, such as on a full disk.
 
     Examples
     --------

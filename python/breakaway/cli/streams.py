@@ -74,7 +74,7 @@ def told_failures() -> Iterator[None]:
     ClosedOutput
         Its reader is gone.
     OutputError
-        It can not be written to, such as on a full disk.
+        It cannot be written to, such as on a full disk.
 
     """
     try:
@@ -85,7 +85,7 @@ def told_failures() -> Iterator[None]:
     except OSError as error:
         _discard_output()
         reason = error.strerror or str(error)
-        raise OutputError(f"standard output: can not be written: {reason}") from None
+        raise OutputError(f"standard output: cannot be written: {reason}") from None
 
 
 def _discard_output() -> None:

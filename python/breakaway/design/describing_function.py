@@ -39,8 +39,8 @@ def describing_function(
     bias : float, optional
         b, in the unit of the input.
     points : int, optional
-        Points of the midpoint rule, at least 8. A jump of f costs an error of the order of its
-        size over the number of points.
+        Points of the midpoint rule, at least 8. A jump of f causes an error of about its size
+        divided by the number of points.
 
     Returns
     -------

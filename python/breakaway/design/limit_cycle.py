@@ -28,7 +28,7 @@ HARMONICS_MAX = 15
 
 @dataclass(frozen=True)
 class LimitCycle:
-    """An oscillation that keeps itself up while the part slides at a mean speed."""
+    """A self-sustained oscillation while the part slides at a mean speed."""
 
     speed_m_per_s: float
     """Mean speed, in m/s."""
@@ -67,7 +67,7 @@ def limit_cycles(
 
     with the hold ``H0 = (1 - 1/z) / (j w T_s)``, n samples of delay and the derivative's filter D.
     R passes through the bristles of equation (2), reversal included. More harmonics are balanced
-    the same way, each by itself, and show what one leaves out.
+    the same way, each by itself, and show what a single one leaves out.
 
     Parameters
     ----------

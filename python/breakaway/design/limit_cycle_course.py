@@ -72,7 +72,8 @@ class LimitCycleComparison(ByValue):
     speed_m_per_s: Array
     """Mean speed at these times, in m/s."""
     steady_amplitude_m_per_s: Array
-    """Amplitude of the limit cycle if speed and place stood still, in m/s; NaN where none is."""
+    """Amplitude of the limit cycle if speed and place stood still, in m/s; NaN where there is
+    none."""
     steady_frequency_hz: Array
     """Its frequency, in Hz."""
     growth_per_s: Array
@@ -116,9 +117,9 @@ def compare_limit_cycle(
 ) -> LimitCycleComparison:
     """Predict the limit cycle along a motion, and compare it with the speed that a run shows.
 
-    Nothing of the run enters the prediction but its reference and, where the oscillation begins,
-    the amplitude of its first cycle: what breaking loose leaves behind is no part of the describing
-    function. The amplitude then follows ``dA/dt = sigma(A, v0(t), x(t)) A``.
+    Only two things of the run enter the prediction: its reference and, where the oscillation
+    begins, the amplitude of its first cycle, because the describing function does not say what
+    breaking loose leaves behind. The amplitude then follows ``dA/dt = sigma(A, v0(t), x(t)) A``.
 
     Parameters
     ----------
@@ -143,7 +144,7 @@ def compare_limit_cycle(
     Raises
     ------
     ScenarioError
-        The columns differ in length or have less than 16 rows, or a parameter is out of range.
+        The columns differ in length or have fewer than 16 rows, or a parameter is out of range.
 
     Notes
     -----
@@ -170,7 +171,7 @@ def compare_limit_cycle(
     if not (t.shape == r.shape == v.shape and t.size >= 16):
         raise ScenarioError(
             f"t_s, reference_m, velocity_m_per_s: shapes {t.shape}, {r.shape}, {v.shape} are not "
-            "one column of at least 16 rows each; give three columns of one trace"
+            "three equal columns of at least 16 rows; give three columns of one trace"
         )
     speed = np.gradient(r, t)
     sliding = (
@@ -204,7 +205,7 @@ def measured_cycles(t_s: ArrayLike, velocity_m_per_s: ArrayLike, mean_m_per_s: A
     Raises
     ------
     ScenarioError
-        The columns are no lists of numbers, or differ in length.
+        The columns are not lists of numbers, or differ in length.
 
     Examples
     --------
@@ -220,8 +221,8 @@ def measured_cycles(t_s: ArrayLike, velocity_m_per_s: ArrayLike, mean_m_per_s: A
     mean = column_of("mean_m_per_s", mean_m_per_s, ScenarioError)
     if not t.shape == v.shape == mean.shape:
         raise ScenarioError(
-            f"t_s, velocity_m_per_s, mean_m_per_s: {t.size}, {v.size} and {mean.size} rows are not "
-            "equally many; give three columns of one trace"
+            f"t_s, velocity_m_per_s, mean_m_per_s: have {t.size}, {v.size} and {mean.size} rows, not "
+            "the same number; give three columns of one trace"
         )
     d = v - mean
     up = np.flatnonzero((d[:-1] < 0.0) & (d[1:] >= 0.0))

@@ -92,7 +92,7 @@ def stuck_plant(joint: AnyJoint, mass_kg: float) -> control.StateSpace:
 
     Notes
     -----
-    Not modeled: that the joint gives way at F_s.
+    Not modeled: the joint gives way at F_s.
 
     Examples
     --------

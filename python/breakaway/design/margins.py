@@ -103,11 +103,11 @@ def margins(loop: control.StateSpace) -> Margins:
     """
     import control
 
-    check_system("loop", loop, "open_loop gives one")
+    check_system("loop", loop, "open_loop returns one")
     if not (loop.issiso() and loop.isdtime(strict=True)):
         raise ScenarioError(
             f"loop: has {loop.ninputs} inputs, {loop.noutputs} outputs and dt = {loop.dt}; give a "
-            "sampled loop of one input and one output, as open_loop does"
+            "sampled loop with one input and one output, as open_loop returns"
         )
     period_s = float(loop.dt)
     loop = control.ss(loop)
@@ -239,7 +239,7 @@ def _closed_poles(loop: control.StateSpace, factor: float) -> ComplexArray:
 
 
 def _stable_factors(loop: control.StateSpace, w: Array) -> list[tuple[float, float]]:
-    """Test between the gains at which a pole can pass the unit circle: where L is real."""
+    """Test between the gains at which a pole can cross the unit circle: where L is real."""
     response = _response_of(loop)
     at = np.append(_crossings(response, w, np.imag), w[-1])
     values = response(at).real

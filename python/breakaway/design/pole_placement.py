@@ -1,4 +1,4 @@
-"""PID gains from a joint by pole placement (section 4.1 of the paper, misprints put right)."""
+"""PID gains from a joint by pole placement (section 4.1 of the paper, misprints corrected)."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def pole_placement(
                  kp = (w**2 + 2 a eps w) m / m2 - 1  kd = (2 eps w + a) m / m2   ki = a w**2 m / m2
         total    0.1 static + 0.9 dynamic
 
-    Misprints put right: the paper prints w**2 twice in the static kp, and ``- eps`` in place of
+    Misprints corrected: the paper prints w**2 twice in the static kp, and ``- eps`` in place of
     ``- c`` in the static kd; (11) lacks an s.
 
     Parameters
@@ -131,8 +131,8 @@ def pole_placement(
     if joint.coulomb_n <= end_n:
         raise ScenarioError(
             f"joint.coulomb_n: {joint.coulomb_n!r} is not > the residual force {end_n:.6g} N, so "
-            "friction does not fall along the guide and equation (12) gives no dynamic gains; "
-            "give the gains as numbers"
+            "friction does not fall along the guide and equation (12) has no dynamic gains; give "
+            "the gains as numbers"
         )
     a, m = pole_per_s, mass_kg
     slowness = damping_ratio * settling_time_s
@@ -153,8 +153,8 @@ def pole_placement(
 
 
 _NO_NUMBERS = (
-    "controller.gains: the design gives gains beyond all numbers; give a settling_time_s, "
-    "damping_ratio and pole_per_s nearer to 1"
+    "controller.gains: the designed gains are too large to compute; give a settling_time_s, "
+    "damping_ratio and pole_per_s closer to 1"
 )
 
 

@@ -37,7 +37,7 @@ class SampledLoop:
 
     @property
     def counts(self) -> bool:
-        """Whether a gain set that is unstable here is not safe.
+        """Whether a gain set must be stable here to be safe.
 
         Falling friction is not counted: it ends in an oscillation of limited size, which
         `breakaway.design.limit_cycles` predicts.

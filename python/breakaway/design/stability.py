@@ -90,7 +90,7 @@ def _routh_hurwitz(damping: float, stiffness: float, ki: float, mass_kg: float) 
     if not np.all(np.isfinite([a2, a1, a0])):
         raise ScenarioError(
             f"gains: kp = {stiffness:g}, kd = {damping:g}, ki = {ki:g} over mass_kg = {mass_kg:g} "
-            "are beyond all numbers; give gains nearer to those of a real loop"
+            "are too large to compute; give gains closer to those of a real loop"
         )
     poles = tuple(complex(p) for p in np.roots([1.0, a2, a1, a0]))
     negative = [

@@ -33,7 +33,7 @@ def plot_run(run: Run) -> Figure:
     Parameters
     ----------
     run : Run
-        A run with a trace; one that diverged is drawn as far as its trace goes.
+        A run with a trace; one that diverged is drawn up to the end of its trace.
 
     Returns
     -------

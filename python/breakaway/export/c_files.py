@@ -51,14 +51,14 @@ def export_c(
     """Write a part of a scenario as self-contained C99.
 
     The code computes the same bits as the simulation in the same real type, and comes with a test
-    program that says so. Two exports of the same scenario are the same, byte for byte.
+    program that proves it. Two exports of the same scenario are the same, byte for byte.
 
     Parameters
     ----------
     scenario : Scenario
         What is exported. Its kinds and options are fixed in the code; its numbers are parameters
-        that may be changed at run time. A number that is left out, such as a derivative filter of
-        0 s, is not there.
+        that may be changed at run time. What is switched off, such as a derivative filter of 0 s,
+        has no parameter.
     what : {"controller", "plant", "loop"}
         Reference, controller and watch; or actuator, joint, part and sensors; or both.
     out : path
@@ -73,10 +73,10 @@ def export_c(
     Raises
     ------
     ScenarioError
-        It is no scenario, `what` or `real` is not known, the controller can not be designed for
+        It is not a scenario, `what` or `real` is not known, the controller cannot be designed for
         this joint, or a number is out of its range as float.
     OutputError
-        The folder can not be written, holds a result of another kind, or files of others under
+        The folder cannot be written, holds a result of another kind, or files of others under
         these names.
 
     Examples
@@ -231,7 +231,7 @@ def _summary(recording: Recording) -> list[str]:
         f"{scenario.timing.steps_per_period} step(s) in a period",
     ]
     if scenario.watch is not None:
-        controller.append("watch: stops at a measurement that can not be true")
+        controller.append("watch: stops at a measurement that cannot be true")
     if scenario.sensors is not None:
         plant.append("sensors: with bandwidth, noise, steps and delay, where they have them")
     if scenario.timing.one_sample_delay:

@@ -99,10 +99,10 @@ def export_fmu(
     Raises
     ------
     ScenarioError
-        It is no scenario, `what` or `fmi` is not known, the controller can not be designed for this
-        joint, or the seed is beyond the integers of FMI 2.
+        It is not a scenario, `what` or `fmi` is not known, the controller cannot be designed for
+        this joint, or the seed is beyond the integers of FMI 2.
     OutputError
-        The file can not be written.
+        The file cannot be written.
 
     Examples
     --------

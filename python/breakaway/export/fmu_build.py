@@ -46,7 +46,7 @@ def build(sources: dict[str, str], identifier: str, fmi: str) -> Built:
     folder = found[0 if fmi == "2" else 1] if found else None
     if found is None or folder is None:
         host = f"{platform.system()} on {platform.machine()}"
-        return Built(None, b"", f"no binary: FMI {fmi} names no platform for {host}")
+        return Built(None, b"", f"no binary: FMI {fmi} has no platform name for {host}")
     compiler = _compiler()
     if compiler is None:
         return Built(None, b"", "no binary: no C compiler found; install gcc or clang, or set CC")
@@ -60,7 +60,7 @@ def build(sources: dict[str, str], identifier: str, fmi: str) -> Built:
         except OSError as error:
             return Built(None, b"", f"no binary: {compiler[0]} does not run: {error.strerror}")
         if done.returncode != 0:
-            said = (done.stderr.strip().splitlines() or ["it says nothing"])[0]
+            said = (done.stderr.strip().splitlines() or ["without a message"])[0]
             return Built(None, b"", f"no binary: {compiler[0]} failed: {said}")
         library = (Path(name) / "library").read_bytes()
     return Built(f"binaries/{folder}/{identifier}{found[2]}", library, "")

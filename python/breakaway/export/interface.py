@@ -81,8 +81,8 @@ FLOW: dict[str, dict[str, str]] = {
         "force_n": "Force to push the part with.",
         "feed_m_per_s": "Speed of the feed.",
         "stack_share": "Share of the piezo stack's full voltage, 0 to 1.",
-        "stop_reason": "Why the watch has stopped for good: 1 not a number, 2 the position jumps, "
-        "3 it is frozen, 4 the clock stands; 0 while it has not.",
+        "stop_reason": "Why the watch has stopped the controller: 1 not a number, 2 the position "
+        "jumps, 3 it is frozen, 4 the clock stands still; 0 while it has not.",
         "reference_m": "Where the part should be at this sample.",
     },
     "plant.input": {
@@ -105,7 +105,7 @@ FLOW: dict[str, dict[str, str]] = {
         "command_force_n": "Commanded force of the period.",
         "command_feed_m_per_s": "Commanded speed of the feed in the period.",
         "command_stack_share": "Commanded share of the stack's full voltage in the period.",
-        "stop_reason": "Why the watch has stopped for good; 0 while it has not.",
+        "stop_reason": "Why the watch has stopped the controller; 0 while it has not.",
         "position_m": "Position at the end of the period.",
         "velocity_m_per_s": "Velocity at the end of the period.",
         "bristle_m": "Deflection of the bristles at the end of the period.",

@@ -91,7 +91,7 @@ def _body(found: dict[str, Any]) -> Body:
 
 
 def _check_defaults(parameters: list[Variable], real: Real) -> None:
-    """Refuse a number that the real type can not hold within its range."""
+    """Refuse a number that the real type cannot hold within its range."""
     from numpy import float32
 
     if real == "double":
@@ -100,6 +100,6 @@ def _check_defaults(parameters: list[Variable], real: Real) -> None:
         held = float(float32(one.value))
         if not one.range.holds(held):
             raise ScenarioError(
-                f"{one.path}: {one.value!r} is {held!r} as float, outside its range; "
-                "export with real = double"
+                f"{one.path}: {one.value!r} is {held!r} as float, outside its range; export with "
+                "real = double"
             )

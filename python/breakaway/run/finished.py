@@ -39,7 +39,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class RunMetrics(ByValue):
-    """The figures of a run. What did not happen is not a number (NaN; null in JSON)."""
+    """The figures of a run; NaN (null in JSON) for what did not happen."""
 
     simulated_s: float
     """Time until the end or until the run diverged, s."""
@@ -64,7 +64,7 @@ class RunMetrics(ByValue):
     work_j: float
     """Integral of F over travel, J."""
     friction_loss_j: float
-    """Work lost in the joint: done on it, less what its bristles still store, J."""
+    """Work lost in the joint: the work done on it, less what its bristles still store, J."""
     impacts: float
     """Number of impacts: stretches of time with F > limits.contact_force_n."""
     contact_time_s: float
@@ -76,7 +76,7 @@ class RunMetrics(ByValue):
     largest_impact_work_j: float
     """Largest work done by one impact, J."""
     largest_jump_m: float
-    """Largest travel above the reference's speed in one slip within the guide, m: what harms the
+    """Largest travel above the reference's speed in one slip within the guide, m: this harms the
     part."""
     time_to_breakaway_s: float
     """When the joint broke loose, s."""
@@ -101,7 +101,7 @@ class RunMetrics(ByValue):
     """Largest tension of the stack beyond its preload, N; below 0 where it was always pressed."""
     stop_reason: float
     """Why the watch stopped the controller: 0 not at all, 1 not a number, 2 the position jumped,
-    3 it was frozen, 4 the clock did not go on."""
+    3 it was frozen, 4 the clock stood still."""
     final_position_m: float
     """Position at the end, m."""
 
@@ -123,10 +123,10 @@ class Run(OneLine, ByValue):
     ``applied_force_n`` and ``joint_force_n``, read-only; empty without a trace. A row holds the
     state at a control sample and the forces during the period after it.
 
-    With a feed axis also ``feed_m``, ``tool_m`` and ``tip_m``: where the tip's face would be if
-    axis and stack were relaxed, if the stack were, and where it is. ``position_m - tip_m`` is the
-    gap, below zero where the tip presses on the part; ``tip_m - tool_m`` what the stack lengthens,
-    ``feed_m - tool_m`` what the axis yields."""
+    With a feed axis also ``feed_m``, ``tool_m`` and ``tip_m``: where the tip's face would be with
+    axis and stack relaxed, with only the stack relaxed, and where it is. ``position_m - tip_m`` is
+    the gap, below zero where the tip presses on the part; ``tip_m - tool_m`` what the stack
+    lengthens, ``feed_m - tool_m`` what the axis yields."""
     scenario: Scenario
     """What was run, every number explicit."""
     seed: int
@@ -144,7 +144,7 @@ class Run(OneLine, ByValue):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What has to be known before its figures are trusted, one sentence each.
+        """What to know before trusting its figures, one sentence each.
 
         Examples
         --------

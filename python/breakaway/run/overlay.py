@@ -13,9 +13,9 @@ from breakaway.model.scenario.scenario import Scenario
 
 
 def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path) -> Scenario:
-    """Give a scenario the joint that a log told of, and the mass where it told that too.
+    """Lay an identified joint over a scenario, and the mass if the log determined it.
 
-    What the log does not tell stays as the scenario has it. Gains by pole placement are then
+    What the log did not determine stays as in the scenario. Gains by pole placement are then
     designed for the identified joint; gains that are given stay.
 
     Parameters
@@ -36,7 +36,7 @@ def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path)
         The file is missing or not valid, the scenario's friction law has no place for a number of
         the joint, or the changed scenario is not valid: the joint and the field are named.
     LogError
-        The identification tells no Coulomb friction, so there is no joint.
+        The identification did not determine Coulomb friction, so there is no joint.
 
     Examples
     --------

@@ -28,10 +28,10 @@ AnyPart = TypeVar("AnyPart", bound=Model)
 
 
 def resolve(scenario: Scenario) -> Scenario:
-    """Replace what a scenario leaves open by numbers: gains, residual force, limits.
+    """Replace what a scenario leaves open with numbers: gains, residual force, limits.
 
-    The result runs bit-identically to the scenario, and on its own: designed gains stay as they
-    are when its joint is changed, as a controller does that does not know its part.
+    The result runs bit-identically to the scenario and depends on nothing else. Designed gains stay
+    as they are when its joint is changed: the controller does not know its part.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def resolve(scenario: Scenario) -> Scenario:
     Raises
     ------
     ScenarioError
-        It is no scenario, or the controller can not be designed for this joint.
+        It is not a scenario, or the controller cannot be designed for this joint.
 
     Examples
     --------

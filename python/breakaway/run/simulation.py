@@ -32,7 +32,7 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
     Raises
     ------
     ScenarioError
-        It is no scenario, or the controller can not be designed for this joint.
+        It is not a scenario, or the controller cannot be designed for this joint.
     KeyboardInterrupt
         Ctrl-C; the loop asks about every 16,000 steps.
 

@@ -53,6 +53,6 @@ def _negative_gains(scenario: Scenario) -> Iterator[str]:
     for which, gains in gain_sets(scenario.controller).items():
         if isinstance(gains, Gains) and min(gains.kp_n_per_m, gains.kd_n_s_per_m) < 0.0:
             yield (
-                f"controller.{which}: one is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
+                f"controller.{which}: a gain is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
                 f"{gains.kd_n_s_per_m:.4g} N s/m; see `breakaway design`"
             )

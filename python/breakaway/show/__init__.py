@@ -1,4 +1,4 @@
 """What people look at: figures, pages, and the folder of a run.
 
-In come finished results, out go pictures and files. Nothing here is computed anew.
+In come finished results, out go pictures and files. Nothing here is recomputed.
 """

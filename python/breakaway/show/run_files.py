@@ -48,7 +48,7 @@ def write_run(run: Run, folder: str | Path) -> list[Path]:
 
     ``scenario.toml`` has every number explicit and reruns to the same bits. A run without a
     trace has neither ``trace.parquet``, ``trace.csv`` nor figures; those of an earlier run are
-    removed from the folder, so that it never tells of two runs.
+    removed from the folder, so that it never describes two runs.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def write_run(run: Run, folder: str | Path) -> list[Path]:
     Raises
     ------
     OutputError
-        The folder can not be written, holds a result of another kind, or files of others under
+        The folder cannot be written, holds a result of another kind, or files of others under
         these names; or the disk is full. Nothing is half written.
 
     Examples
@@ -86,7 +86,7 @@ def write_run(run: Run, folder: str | Path) -> list[Path]:
 def written_run(folder: Path) -> Iterator[Callable[[Run], list[Path]]]:
     """Give a function that writes a run to ``folder`` once the block ends.
 
-    A folder that can not be written is found before the block, and so before a long simulation.
+    A folder that cannot be written is found before the block, and so before a long simulation.
     """
     written: list[str] = []
 

@@ -32,7 +32,7 @@ USUAL_RUNS = 10_000
 
 
 class Asked(StudyModel):
-    """A comparison, every number of it: the same of these gives the same bytes."""
+    """A comparison with all its numbers: the same numbers give the same bytes."""
 
     kind: Literal["comparison"] = "comparison"
     """What this is."""
@@ -49,10 +49,9 @@ class Asked(StudyModel):
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Seed of parts, disturbances and noise."""
     baselines: list[Name] = Field(default_factory=list)
-    """Names of the methods that the others are measured against, by the best of them. Left out:
-    all."""
+    """Names of the methods whose best one the others are measured against. Left out: all."""
     runs_per_piece: Annotated[int, Field(ge=1)] = 5000
-    """Parts of the population in one piece: many fill the processor's lanes, few are soon lost."""
+    """Parts of the population in one piece: many fill the processor's lanes, few lose less work."""
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -60,7 +59,7 @@ class Asked(StudyModel):
         for kind, given in (("methods", names), ("laws", self.laws), ("baselines", self.baselines)):
             twice = next((name for name in given if list(given).count(name) > 1), None)
             if twice is not None:
-                raise ValueError(f"{kind}: {twice!r} is there twice; give each once")
+                raise ValueError(f"{kind}: {twice!r} is given twice; give each once")
         for name in self.baselines:
             if name not in names:
                 raise ValueError(f"baselines: {name!r} is not one of {', '.join(names)}")

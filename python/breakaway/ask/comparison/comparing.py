@@ -44,7 +44,7 @@ class Comparison(OneLine, ByValue):
     """A finished comparison: what each method did to the same parts, and what that shows."""
 
     asked: Asked
-    """All it takes to run it again."""
+    """Everything needed to run it again."""
     trials: Mapping[str, Mapping[str, Trial]]
     """Law -> name of a method -> what it did, part by part."""
     table: Sequence[Row]
@@ -52,9 +52,9 @@ class Comparison(OneLine, ByValue):
     result: Sequence[str]
     """What it shows, in sentences."""
     notes: Sequence[str]
-    """What has to be known before they are trusted."""
+    """What to know before trusting them."""
     folder: Path | None
-    """Where it is; None where it was not written."""
+    """Its folder; None where it was not written."""
 
     def __repr__(self) -> str:
         asked = self.asked
@@ -105,15 +105,15 @@ def compare_methods(
 
     With a folder, ``manifest.json`` comes first, then the pieces as they finish (Parquet), then
     ``table.csv``, figures, the page ``index.html``, ``comparison.toml``, and last
-    ``summary.json``. What was ended, in whatever way, goes on with ``resume``: finished files
-    are read and not computed again, and all files are the same bytes in the end. The results do
-    not depend on threads.
+    ``summary.json``. A comparison that was interrupted, in whatever way, continues with ``resume``:
+    finished files are read and not computed again, and in the end all files have the same bytes.
+    The results do not depend on threads.
 
     Parameters
     ----------
     population : str, Path or PartPopulation
-        Where the parts are from: a preset's name, a TOML file, or the population itself. A file
-        ``comparison.toml`` of a folder holds a whole comparison; what is given beside counts then.
+        Where the parts are from: a preset's name, a TOML file, or the population itself. A
+        ``comparison.toml`` of a folder holds a whole comparison; other arguments then override it.
     methods : sequence, optional
         Names of presets, TOML files, or methods. Left out: every preset.
     laws : sequence of str, optional
@@ -125,19 +125,19 @@ def compare_methods(
     seed : int, optional
         Seed of parts, disturbances and noise. Left out: 0.
     baselines : sequence of str, optional
-        Names of the methods by the best of which all others are measured. Left out: each method is
-        measured by the best of all others.
+        Names of the methods whose best one all others are measured against. Left out: each method
+        is measured against the best of all others.
     out : str or Path, optional
         The folder; made if it is missing. Left out: nothing is written.
     resume : bool, optional
-        Whether to go on with a comparison that the folder holds.
+        Whether to continue a comparison that the folder holds.
     threads : int, optional
         Left out: one for each processor.
     progress : callable, optional
         Called about 20 times a second with a `Progress`. What it raises ends the comparison.
     notice : callable, optional
-        Called with a sentence when a file that is not the one that was written, be it damaged,
-        edited or of another comparison, is computed again.
+        Called with a sentence when a file is computed again because it is damaged, edited or from
+        another comparison.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def compare_methods(
     ScenarioError
         There is no such population or method, or it is not valid.
     OutputError
-        The folder can not be written, or the disk is full; finished files stay.
+        The folder cannot be written, or the disk is full; finished files stay.
     KeyboardInterrupt
         Ctrl-C; finished files stay.
 

@@ -134,8 +134,8 @@ def _draw(
                     folder,
                     f"{name}, {LAW_WORDS[law]}.",
                     "Force and position of the part in the middle by its largest jump, of those "
-                    "that came free; of the part with the largest jump; and of that one about its "
-                    "worst slip, which is shaded. Dashed: the force that would break the joint "
+                    "that came free; of the part with the largest jump; and of that part around "
+                    "its worst slip, which is shaded. Dashed: the force that would break the joint "
                     "loose where the part is. Where the tip of a feed axis is behind the part, it "
                     "does not push.",
                     method=name,

@@ -1,4 +1,4 @@
-"""What a comparison shows, in sentences; what holds under some friction laws only is flagged."""
+"""What a comparison shows, in sentences; what holds only under some friction laws is flagged."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Verdicts = dict[tuple[str, str], dict[str, int]]
 
 
 def sentences_of(asked: Asked, trials: Trials, rows: Sequence[Row]) -> list[str]:
-    """Say what is found: the gentlest, why the others fail, and what hangs on the law."""
+    """Say what was found: the gentlest, why the others fail, and what depends on the law."""
     return [
         *_leading(asked, trials, rows, "gentle"),
         *_leading(asked, trials, rows, "strict"),
@@ -40,7 +40,7 @@ def notes_of(asked: Asked) -> list[str]:
     """Say what has to be known before the sentences are trusted."""
     pairs = len(asked.methods) * (len(asked.methods) - 1) // 2 * len(asked.laws)
     notes = [
-        f"a part is gently freed if it is released and suffers at most {_limits(asked, 'gentle')}",
+        f"a part is freed gently if it is released and suffers at most {_limits(asked, 'gentle')}",
         f"the strict limits are {_limits(asked, 'strict')}",
     ]
     if pairs:
@@ -50,7 +50,8 @@ def notes_of(asked: Asked) -> list[str]:
         )
     if len(asked.laws) == 1:
         notes.append(
-            f"all of it is under the law {asked.laws[0]} alone; name more laws to see what stays"
+            f"all of this holds under the law {asked.laws[0]} alone; name more laws to see what "
+            "remains"
         )
     return notes
 
@@ -96,8 +97,8 @@ def _leading(asked: Asked, trials: Trials, rows: Sequence[Row], name: str) -> li
     ]
     if len(groups) > 1:
         said.append(
-            f"CAUTION: which method frees most parts {WORDS[name]} hangs on the friction law; "
-            "do not rest it on one law"
+            f"CAUTION: which method frees most parts {WORDS[name]} depends on the friction law; do "
+            "not rely on one law"
         )
     return said
 
@@ -175,7 +176,7 @@ def _failing(asked: Asked, rows: Sequence[Row]) -> list[str]:
             parts.append(
                 f"{CRITERION_WORDS[name]}{where}, within its limit for {kept} of the parts"
             )
-        said.append(f"{method} frees {gentle} gently; what fails it most is {' and '.join(parts)}")
+        said.append(f"{method} frees {gentle} gently; it fails most often by {' and '.join(parts)}")
     return said
 
 

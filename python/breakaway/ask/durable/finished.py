@@ -1,4 +1,4 @@
-"""What a folder holds, finished or not, read as far as it is wanted."""
+"""What a folder holds, finished or not; only what is asked for is read."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class DurableFolder(ABC):
 
     @property
     def finished(self) -> bool:
-        """Whether it came to its end, and all pieces and the summary are as they were written."""
+        """Whether it is finished, and all pieces and the summary are as they were written."""
         return all(self._journal.flaw(name) is None for name in finished_names(self._journal))
 
     @property
@@ -53,13 +53,13 @@ class DurableFolder(ABC):
         path = self.folder / SUMMARY
         if not is_file(path):
             raise StudyError(
-                f"{self.folder}: is not finished, {self._kept} are; go on with --resume"
+                f"{self.folder}: is not finished ({self._kept} are); go on with --resume"
             )
         for name in finished_names(self._journal):
             self._journal.refuse_flawed(name)
         summary = read_json(path, MOST_SUMMARY_BYTES)
         if not isinstance(summary, dict):
-            raise StudyError(f"{path}: is no table; go on with --resume to have it again")
+            raise StudyError(f"{path}: is not a table; go on with --resume to write it again")
         return summary
 
     @property

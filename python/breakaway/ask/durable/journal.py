@@ -81,7 +81,7 @@ class Journal:
         Raises
         ------
         StudyError
-            It can not be read.
+            It cannot be read.
 
         """
         path = self.folder / DIGESTS
@@ -94,8 +94,8 @@ class Journal:
             content = b""
         except OSError as error:
             raise StudyError(
-                f"{path}: can not be read: {error.strerror or error}; remove it, and go on with "
-                "--resume to have everything computed again"
+                f"{path}: cannot be read: {error.strerror or error}; remove it, and go on with "
+                "--resume to compute everything again"
             ) from None
         lines = content.decode("utf-8", "replace").split("\n")[:-1]
         self._known = {match[2]: match[1] for line in lines if (match := LINE.fullmatch(line))}
@@ -118,7 +118,7 @@ class Journal:
         except FileNotFoundError:
             return MISSING
         except OSError as error:
-            return f"can not be read ({error.strerror or error})"
+            return f"cannot be read ({error.strerror or error})"
         if name not in self._known:
             return f"has no digest in {DIGESTS}"
         if found != self._known[name]:
@@ -138,7 +138,7 @@ class Journal:
         flaw = self.flaw(name)
         if flaw is not None:
             raise StudyError(
-                f"{self.folder / name}: {flaw}; go on with --resume to have it made again"
+                f"{self.folder / name}: {flaw}; go on with --resume to compute it again"
             )
 
     def write(self, name: str, content: bytes) -> None:
@@ -147,7 +147,7 @@ class Journal:
         Raises
         ------
         OutputError
-            It can not be written, or goes through a symbolic link.
+            It cannot be written, or goes through a symbolic link.
 
         """
         path = self.folder / name

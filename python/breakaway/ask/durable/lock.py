@@ -23,7 +23,7 @@ def locked(folder: Path, called: str) -> Iterator[None]:
     StudyError
         Another process is in the folder.
     OutputError
-        The folder can not be written.
+        The folder cannot be written.
 
     """
     try:

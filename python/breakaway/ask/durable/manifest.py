@@ -99,7 +99,7 @@ def read_manifest(folder: Path, called: str) -> dict[str, Any]:
     Raises
     ------
     StudyError
-        There is none, it can not be read, or its identity is not that of its content.
+        There is none, it cannot be read, or its identity does not match its content.
 
     """
     path = folder / MANIFEST
@@ -108,15 +108,15 @@ def read_manifest(folder: Path, called: str) -> dict[str, Any]:
         check_types(_Layout, manifest)
     except (FileNotFoundError, NotADirectoryError):
         raise StudyError(
-            f"{folder}: holds no {called} ({MANIFEST} is missing); give the --out of a {called}"
+            f"{folder}: holds no {called} ({MANIFEST} is missing); give the --out folder of a "
+            f"{called}"
         ) from None
     except (OSError, ValueError) as error:
         raise _unreadable(path, error, called) from None
     if manifest["format"] != FORMAT:
         raise StudyError(
-            f"{path}: has the format {manifest['format']}, not {FORMAT}; open it with the "
-            f"breakaway that wrote it, {manifest['breakaway_version']}, or begin again in another "
-            "folder"
+            f"{path}: has the format {manifest['format']}, not {FORMAT}; open it with breakaway "
+            f"{manifest['breakaway_version']}, which wrote it, or start again in another folder"
         )
     try:
         check_types(_Manifest, manifest)
@@ -124,8 +124,8 @@ def read_manifest(folder: Path, called: str) -> dict[str, Any]:
         raise _unreadable(path, error, called) from None
     if manifest["identity"] != identity_of(manifest):
         raise StudyError(
-            f"{path}: was changed: its identity is not that of its content; put back what was "
-            "there, or begin again in another folder"
+            f"{path}: was changed: its identity does not match its content; restore it, or start "
+            "again in another folder"
         )
     return manifest
 
@@ -136,14 +136,15 @@ def manifest_of_kind(folder: Path, kind: Kind, model: type[Checked] = _Manifest)
     Raises
     ------
     StudyError
-        It is of another kind, or can not be read.
+        It is of another kind, or cannot be read.
 
     """
     manifest = read_manifest(folder, kind.called)
     found, path = kind_of(manifest), folder / MANIFEST
     if found != kind:
         raise StudyError(
-            f"{path}: is of a {found.called}, not of a {kind.called}; open it with {found.opener}"
+            f"{path}: belongs to a {found.called}, not to a {kind.called}; open it with "
+            f"{found.opener}"
         )
     try:
         check_types(model, manifest)
@@ -154,7 +155,7 @@ def manifest_of_kind(folder: Path, kind: Kind, model: type[Checked] = _Manifest)
 
 def _unreadable(path: Path, error: Exception, called: str) -> StudyError:
     return StudyError(
-        f"{path}: can not be read as a manifest: {error}; give the --out of a {called}"
+        f"{path}: cannot be read as a manifest: {error}; give the --out folder of a {called}"
     )
 
 

@@ -1,4 +1,4 @@
-"""How far long work is."""
+"""How far long work has come."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Progress:
-    """How far long work is.
+    """How far long work has come.
 
     Examples
     --------
@@ -18,10 +18,10 @@ class Progress:
     """
 
     runs_done: int
-    """Runs that are done, those found on disk among them."""
+    """Runs that are done, including those found on disk."""
     runs_found: int
     """Runs that were found on disk, done by an earlier process."""
     runs_max: int
-    """Most runs that it may take, as far as is known: a bisection may need fewer."""
+    """The most runs that it may take: a bisection may need fewer."""
     doing: str
     """What is done, in words."""

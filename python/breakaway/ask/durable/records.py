@@ -36,7 +36,7 @@ class Records:
         Raises
         ------
         StudyError
-            The file can not be read.
+            The file cannot be read.
 
         """
         found: list[dict[str, Any]] = []
@@ -53,14 +53,14 @@ class Records:
         Raises
         ------
         StudyError
-            The file can not be read, or a line is not as it was written.
+            The file cannot be read, or a line is not as it was written.
 
         """
         found = self.read()
         if len(found) < self._content().count(b"\n"):
             raise StudyError(
                 f"{self.path}: line {len(found) + 1} is not as it was written; go on with --resume "
-                "to have it and what follows computed again"
+                "to compute it and all that follow again"
             )
         return found
 
@@ -70,16 +70,16 @@ class Records:
         Raises
         ------
         StudyError
-            The file can not be read.
+            The file cannot be read.
         OutputError
-            It can not be written.
+            It cannot be written.
 
         """
         kept = self.read()
         if len(kept) < len(self._content().splitlines()):
             say(
                 f"{self.path.name}: line {len(kept) + 1} was not finished, or is not as it was "
-                "written; it and what follows is computed again"
+                "written; it and all that follow are computed again"
             )
             self.replace(kept)
         return kept
@@ -90,14 +90,14 @@ class Records:
         Raises
         ------
         OutputError
-            The disk is full, or the file can not be written; it is as it was before.
+            The disk is full, or the file cannot be written; it is as it was before.
 
         """
         append_inside(self.path, self._line(record, self._count))
         self._count += 1
 
     def replace(self, records: Iterable[Mapping[str, Any]]) -> None:
-        """Write all records anew, whole or not at all, unless that is what is there."""
+        """Write all records again, whole or not at all, unless they are there already."""
         lines = [self._line(record, number) for number, record in enumerate(records)]
         self._count, content = len(lines), b"".join(lines)
         if not self.path.exists() or self._content() != content:
@@ -110,7 +110,7 @@ class Records:
         except FileNotFoundError:
             return b""
         except OSError as error:
-            raise StudyError(f"{self.path}: can not be read: {error.strerror or error}") from None
+            raise StudyError(f"{self.path}: cannot be read: {error.strerror or error}") from None
         if len(content) > MOST_BYTES:
             raise StudyError(f"{self.path}: has more than {MOST_BYTES} bytes; it is not ours")
         return content

@@ -39,7 +39,7 @@ def prepared(folder: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iter
         The folder holds the same and is not to be resumed, another one, files of others, a
         symbolic link, or what another process is running.
     OutputError
-        The folder can not be written.
+        The folder cannot be written.
 
     """
     called = kind_of(manifest).called
@@ -94,7 +94,7 @@ def _refuse_filled(folder: Path, called: str) -> None:
             if not ours and path not in (folder / LOCK, folder / PIECES):
                 raise StudyError(
                     f"{folder}: holds {path.relative_to(folder)} but no {MANIFEST}; a {called} "
-                    "begins in a new or empty folder: give one"
+                    "starts in a new or empty folder: give one"
                 )
 
 
@@ -113,8 +113,8 @@ def _refuse_other(
         said = "; ".join(differences[:3]) or "the order of its keys"
         more = f"; and {len(differences) - 3} more" if len(differences) > 3 else ""
         raise StudyError(
-            f"{folder}: holds another {called}: {said}{more}; give another folder, or the "
-            f"{called} that was begun"
+            f"{folder}: holds another {called}: {said}{more}; give another folder, or the {called} "
+            "that was started there"
         )
     if not resume:
         raise StudyError(

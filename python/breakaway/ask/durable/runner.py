@@ -33,9 +33,9 @@ class Runner:
         notice: Callable[[str], None] | None = None,
     ) -> None:
         self.runs_max = runs_max
-        """Most runs that it may take, as far as is known."""
+        """The most runs that it may take."""
         self.runs_done = 0
-        """Runs that are done, those found on disk among them."""
+        """Runs that are done, including those found on disk."""
         self.runs_found = 0
         """Runs that were found on disk."""
         self.doing = ""
@@ -67,7 +67,7 @@ class Runner:
         Raises
         ------
         OutputError
-            The folder can not be written, or the disk is full.
+            The folder cannot be written, or the disk is full.
 
         """
         if self._journal is not None:
@@ -80,7 +80,7 @@ class Runner:
         Raises
         ------
         OutputError
-            One can not be removed.
+            One cannot be removed.
 
         """
         kept = [piece_name(number) for number in range(self._pieces)]

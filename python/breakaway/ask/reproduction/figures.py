@@ -180,8 +180,8 @@ _FORCE_WORDS = {
         "Figure 8: forces with vibration, var = 5 %.",
         "One run of each. Read literally the loop diverges soon after breakaway. Bounded, it "
         "hammers: pulses exceed the breakaway force of 450 N and throw the part ahead of the "
-        "reference; the force that is asked for then turns negative, the tip gives none, and fewer "
-        "pulses show than are commanded. The paper shows a smooth force.",
+        "reference; the commanded force then turns negative, the tip delivers none, and fewer "
+        "pulses appear than are commanded. The paper shows a smooth force.",
     ),
 }
 
@@ -201,7 +201,7 @@ def _panel_title(control: str, run: Run) -> str:
 
 
 def displacement(runs: Runs) -> ReproducedFigure:
-    """Figure 9: desired and measured displacement, and the error that the paper can not show."""
+    """Figure 9: desired and measured displacement, and the error that the paper cannot show."""
     drawing = house_figure(height=4.6)
     top, bottom = drawing.subplots(2, sharex=True)
     reference = runs.disturbed["without_vibration"].trace
@@ -221,7 +221,7 @@ def displacement(runs: Runs) -> ReproducedFigure:
         "Figure 9: displacement, var = 5 %.",
         "One run of each. Above, without vibration the measured position lies on the desired one, "
         "as the paper shows; bounded, the part advances in steps of millimeters and flies on once "
-        "it is free. Below, the error on a logarithmic scale tells the controllers apart.",
+        "it is free. Below, the error on a logarithmic scale distinguishes the controllers.",
         drawing,
         data,
     )

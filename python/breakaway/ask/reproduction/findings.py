@@ -63,7 +63,7 @@ def misprints() -> list[Finding]:
             "The characteristic polynomial lacks an s",
             "(s + a)(s² + 2 ε ω + ω²)",
             "(s + a)(s² + 2 ε ω s + ω²)",
-            "Without the s its middle term is a constant, and the gains do not follow.",
+            "Without the s its middle term is a constant, and the gains do not result.",
         ),
         misprint(
             "static_gains",
@@ -264,7 +264,7 @@ def _smoother(runs: Runs) -> Finding:
         f"{np.nanmedian(plain.peak_force_n[level]):.0f} N without",
         False,
         "Each pulse throws the part ahead of the reference; the PID's output then turns negative, "
-        "which a tip that only pushes can not follow, and the part waits. This loop is chaotic: "
+        "which a tip that only pushes cannot follow, and the part waits. This loop is chaotic: "
         "a single run is no measurement, and only figures over many runs are quoted.",
     )
 
@@ -286,7 +286,7 @@ def _jolt(runs: Runs) -> Finding:
         f"{on_force.metrics.final_position_m * 1e3:.1f} mm in 4 s at var = 30 %",
         None,
         "Each redraw rescales the elastic force of a stuck joint and jolts it. The artifact "
-        "flatters every force; the option acts_on = 'friction_level' is without it.",
+        "flatters every force; the option acts_on = 'friction_level' avoids it.",
     )
 
 

@@ -72,7 +72,7 @@ def reproduce(
     StudyError
         The folder holds figure 10 with other settings or of another version.
     OutputError
-        The folder can not be written, holds a result of another kind, files of others under these
+        The folder cannot be written, holds a result of another kind, files of others under these
         names, or a symbolic link in place of a folder of figure 10.
 
     """
@@ -157,7 +157,7 @@ def _page(
     tables = [
         {
             "title": "Table I: parameters",
-            "text": "Ours is what Table II implies; where it differs, Table I can not be what "
+            "text": "Ours is what Table II implies; where it differs, Table I cannot be what "
             "the paper computed with.",
             "rows": [row for row in rows if row.key.startswith("table1.")],
         },

@@ -188,7 +188,7 @@ class FullSurvey:
     progress: Callable[[Progress], None] | None = field(default=None, compare=False)
     """Called about 20 times a second while runs are under way."""
     notice: Callable[[str], None] | None = field(default=None, compare=False)
-    """Called with a sentence when a file of a level was damaged and is computed again."""
+    """Called with a sentence when a damaged file of a level is computed again."""
 
     def study(self, control: str) -> SweepStudy:
         """Give the study of a control.
@@ -226,7 +226,7 @@ class FullSurvey:
         StudyError
             The folder holds figure 10 with other settings or of another version.
         OutputError
-            The folder can not be written; finished levels stay.
+            The folder cannot be written; finished levels stay.
         KeyboardInterrupt
             Ctrl-C; finished levels stay.
 

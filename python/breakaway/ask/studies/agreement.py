@@ -233,15 +233,14 @@ class AgreementPlan(Plan):
             notes.append(
                 "differences are the other variant's value less the first one's in the same run; "
                 f"intervals at {percent(self.asked.confidence)} are of the median, by order "
-                "statistics, and of shares, exact; each by itself, not corrected for how many "
-                "there are"
+                "statistics, and of shares, exact; each by itself, not corrected for their number"
             )
         notes += self._notes_of_levels(smallest)
         if self.study.jolted:
             notes.append(
                 "a disturbance of the joint force multiplies what holds a stuck joint and jolts it "
-                "at every redraw, which some laws take for help; disturbances = "
-                '["joint_force", "friction_level"] shows how much hangs on that'
+                "at every redraw, which counts as help under some laws; disturbances = "
+                '["joint_force", "friction_level"] shows how much depends on that'
             )
         return notes
 
@@ -250,16 +249,19 @@ class AgreementPlan(Plan):
             return []
         over, low, high = self.sought.over, self.levels[0], self.levels[-1]
         notes = [
-            f"{over} is known to {self.sought.resolution:g}; smaller differences count as none"
+            f"{over} is known to within {self.sought.resolution:g}; smaller differences count as "
+            "none"
         ]
         below = sum(int((found <= low).sum()) for found in smallest.values())
         above = sum(int((found > high).sum()) for found in smallest.values())
         if below:
-            notes.append(f"{below} runs need no more than the lowest level, {low:g}, and count so")
+            notes.append(
+                f"{below} runs need no more than the lowest level, {low:g}, and are counted at it"
+            )
         if above:
             notes.append(
-                f"{above} runs need more than the highest level {high:g}, and count as one step "
-                "above it: their differences are larger than they are given"
+                f"{above} runs need more than the highest level {high:g}, and are counted as one "
+                "step above it: their true differences are larger than stated"
             )
         return notes
 

@@ -35,7 +35,7 @@ OWN = "variant's own"
 
 
 class AgreementVariant(StudyModel):
-    """One of the ways that are compared under every law."""
+    """One of the variants that are compared under every law."""
 
     name: Name
     """A name for tables and figures."""
@@ -51,16 +51,16 @@ class AgreementVariant(StudyModel):
                 )
             if path == "seed":
                 raise ValueError(
-                    "changes: all variants meet the same parts and draws, so seed is none of "
-                    "them; give it to the study"
+                    "changes: all variants meet the same parts and draws, so they cannot change "
+                    "seed; set it in the study"
                 )
         return self
 
 
 class SmallestTable(LevelsTable):
-    """The smallest level of a number that frees a part, sought for each part and each variant.
+    """The smallest level of a number that frees a part, searched for each part and each variant.
 
-    Each run is bisected by itself, which presumes that a run which a level frees is freed by
+    Each run is bisected by itself, on the assumption that a run freed at one level is freed at
     every higher one.
     """
 
@@ -73,7 +73,7 @@ class AgreementTable(StudyModel):
     """What is compared, and under which laws."""
 
     variants: Annotated[list[AgreementVariant], Field(min_length=1)]
-    """What is compared, each with each."""
+    """The variants; each is compared with each other one."""
     laws: Annotated[list[Law], Field(min_length=1)] = Field(
         default_factory=lambda: list(USUAL_LAWS)
     )
@@ -85,10 +85,10 @@ class AgreementTable(StudyModel):
     """What the disturbance multiplies; every law is asked with each. Left out: as the scenario
     says."""
     smallest: SmallestTable | None = None
-    """A number whose smallest sufficient level is compared. Metrics are then compared only where
-    the study names some."""
+    """A number whose smallest sufficient level is compared. Metrics are then compared only if the
+    study names some."""
     relevant: dict[str, NotNegative] = Field(default_factory=dict)
-    """Difference up to which nothing is said to differ, by metric, "released" (a share) or
+    """Difference up to which values count as equal, by metric, "released" (a share) or
     "smallest". Left out: 0."""
     confidence: Share = 0.95
     """Confidence of every interval."""
@@ -102,16 +102,16 @@ class AgreementTable(StudyModel):
         ):
             twice = next((one for one in found if list(found).count(one) > 1), None)
             if twice is not None:
-                raise ValueError(f"{name}: {twice!r} is there twice; give each once")
+                raise ValueError(f"{name}: {twice!r} is given twice; give each once")
         if len(self.laws) < 2:
-            raise ValueError(f"laws: {self.laws[0]!r} alone agrees with itself; give two or more")
+            raise ValueError(f"laws: {self.laws[0]!r} alone cannot disagree; give two or more")
         if len(self.variants) < 2:
             raise ValueError("variants: 1 is not a comparison; give two or more")
         for law in self.numbers:
             if law not in self.laws:
                 raise ValueError(
-                    f"numbers.{law}: is none of the laws {', '.join(self.laws)}; add it to laws, "
-                    "or leave it out"
+                    f"numbers.{law}: is not one of the laws {', '.join(self.laws)}; add it to "
+                    "laws, or leave it out"
                 )
         metrics = [name for name in self.relevant if name not in (RELEASED, SMALLEST)]
         known_metrics(metrics, "agreement.relevant")
@@ -119,7 +119,7 @@ class AgreementTable(StudyModel):
 
 
 class AgreementStudy(StudyBase):
-    """The same question under every friction law: which conclusions do not hang on one of them.
+    """The same question under every friction law: which conclusions do not depend on one of them.
 
     Under every law all variants meet the same parts and draws, and a controller that was designed
     for the scenario's own joint: it does not know the law.
@@ -183,7 +183,7 @@ class AgreementStudy(StudyBase):
 
     @property
     def certain(self) -> bool:
-        """Whether nothing is drawn, so that one run shows all there is."""
+        """Whether nothing is drawn, so that one run shows everything."""
         return not self.vary and not any(map(_is_drawn, self.scenarios.values()))
 
     @property
@@ -259,7 +259,7 @@ class AgreementStudy(StudyBase):
                     )
         if len(self.disturbances) > 1 and self.undisturbed:
             raise StudyError(
-                "agreement.disturbances: are all the same, for disturbance.var is 0 in every "
+                "agreement.disturbances: are all the same, because disturbance.var is 0 in every "
                 "variant; give it a value, or leave disturbances out"
             )
 
@@ -267,12 +267,12 @@ class AgreementStudy(StudyBase):
         needed = ceil(1.0 - log2(1.0 - self.agreement.confidence))
         if self.certain and self.runs > 1:
             raise StudyError(
-                f"runs: {self.runs} runs of each variant would all be the same, for nothing is "
+                f"runs: {self.runs} runs of each variant would all be the same, because nothing is "
                 "drawn: vary is empty and disturbance.var is 0; give one of them, or runs = 1"
             )
         if not self.certain and self.runs < needed:
             raise StudyError(
-                f"runs: {self.runs} runs can not show which way differences go at "
+                f"runs: {self.runs} runs cannot show which way differences go at "
                 f"{percent(self.agreement.confidence)} confidence, even where all agree; give "
                 f"{needed} or more"
             )

@@ -73,7 +73,7 @@ Changes = Annotated[dict[str, Any], AfterValidator(_as_written)]
 
 
 def known_metrics(names: list[str], where: str = "metrics") -> list[str]:
-    """Give the names back, unless one of them is no metric or is there twice.
+    """Give the names back, unless one of them is not a metric or is given twice.
 
     Raises
     ------
@@ -110,7 +110,8 @@ class StudyBase(StudyModel):
         | None
     ) = None
     """A joint that was identified from a log: the path of its file (from the study's own folder).
-    Its values are laid over the scenario, and its draws join what differs from part to part."""
+    Its values are laid over the scenario, and its draws are added to what differs from part to
+    part."""
     changes: Changes = Field(default_factory=dict)
     """What is changed in the scenario, by dotted path, such as "joint.stiction_n"."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] | None = None
@@ -130,7 +131,7 @@ class StudyBase(StudyModel):
     ] = Field(default_factory=dict)
     """What differs from part to part: a distribution by dotted path."""
     runs_per_piece: Annotated[int, Field(ge=1, le=1_000_000)] = 8192
-    """Runs that are written together. A study that is killed loses the piece that it was at."""
+    """Runs that are written together. A killed study loses only the piece it was working on."""
 
     @cached_property
     def base(self) -> Scenario:
@@ -185,22 +186,22 @@ class StudyBase(StudyModel):
         """Raise a `StudyError` where all runs of a point would be the same."""
         if self.runs > 1 and not self.draws() and "disturbance.var" not in swept:
             raise StudyError(
-                f"runs: {self.runs} runs of each point would all be the same, for nothing is "
+                f"runs: {self.runs} runs of each point would all be the same, because nothing is "
                 "drawn: vary is empty and disturbance.var is 0; give one of them, or runs = 1"
             )
 
 
 class LevelsTable(StudyModel):
-    """A number that is sought, and the levels of it that may be tried."""
+    """A number whose level is searched for, and the levels that may be tried."""
 
     over: Name
-    """The number that is sought, by dotted path, such as "actuator.force_max_n"."""
+    """The number whose level is searched for, by dotted path, such as "actuator.force_max_n"."""
     low: float
     """Lowest level that is tried."""
     high: float
     """Highest level that is tried."""
     resolution: Annotated[float, Field(gt=0.0)]
-    """Distance of the levels: low, low + resolution, ..., high."""
+    """Distance between levels: low, low + resolution, ..., high."""
 
     @model_validator(mode="after")
     def _has_levels(self) -> Self:

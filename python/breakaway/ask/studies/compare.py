@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
-from breakaway.ask.studies.base import percent
 from breakaway.ask.studies.levels import Level
 from breakaway.ask.studies.plan import (
     Plan,
@@ -62,10 +61,10 @@ class ComparePlan(Plan):
             tables={"outcomes": outcomes, "differences": differences},
             notes=[
                 "differences are the other controller's value less the first one's in the same "
-                "run, over runs that neither let diverge and in which both have the metric; their "
+                "run, over runs that diverged under neither and have the metric under both; their "
                 f"medians have intervals by order statistics at {percent(confidence)}",
-                "p: exact test of McNemar that both release equally often; not corrected for how "
-                "many controllers or metrics are compared",
+                "p: McNemar's exact test that both release equally often; not corrected for the "
+                "number of controllers or metrics",
             ],
         )
 

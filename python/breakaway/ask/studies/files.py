@@ -65,7 +65,7 @@ def load_table(
     Raises
     ------
     StudyError
-        There is no such file, it is not TOML, or what it describes can not be built.
+        There is no such file, it is not TOML, or what it describes cannot be built.
 
     """
     check_arguments(load_table, locals(), StudyError)

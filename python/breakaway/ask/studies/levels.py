@@ -60,7 +60,7 @@ def grid_levels(tables: object) -> object:
     Raises
     ------
     ValueError
-        A path has no values, the same value twice, or a range that is none.
+        A path has no values, the same value twice, or an invalid range.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def _levels(path: str, values: object) -> list[Level]:
             )
     if len(set(levels)) < len(levels):
         twice = next(level for level in levels if levels.count(level) > 1)
-        raise ValueError(f"{path}: {shown(twice)} is there twice; give each value once")
+        raise ValueError(f"{path}: {shown(twice)} is given twice; give each value once")
     kinds = {float if type(level) is int else type(level) for level in levels}
     if len(kinds) > 1:
         raise ValueError(f"{path}: {shown(levels)} mixes kinds of values; give numbers or texts")
@@ -143,7 +143,7 @@ def _spaced(path: str, table: Mapping[str, Any]) -> list[Level]:
     if not 2 <= count <= 100_000:
         raise ValueError(f"{path}.count: {count!r} is not within 2 to 100000; give such a number")
     if spacing == "log" and first <= 0.0:
-        raise ValueError(f"{path}.from: {first!r} is not > 0; logarithms need that")
+        raise ValueError(f"{path}.from: {first!r} is not > 0; a logarithmic scale needs that")
     return [float(value) for value in _SPACINGS[spacing](first, last, count)]
 
 

@@ -57,7 +57,7 @@ class Summary:
     tables: dict[str, list[Row]]
     """Tables by name."""
     notes: list[str] = field(default_factory=list)
-    """What has to be known before the answer is trusted."""
+    """What to know before trusting the answer."""
     facts: Row = field(default_factory=dict)
     """Single numbers of the answer."""
 
@@ -66,7 +66,7 @@ class Plan(ABC):
     """A study that can be run: each kind has its own."""
 
     runs_max: int
-    """Most runs that it may take."""
+    """The most runs that it may take."""
     points: list[Point]
     """Points that are known before anything runs, or that bound the others; all are checked."""
     varied: list[str]

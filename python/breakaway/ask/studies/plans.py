@@ -24,7 +24,7 @@ def plan_of(study: Study) -> Plan:
     Raises
     ------
     StudyError
-        The study can not be run as it is.
+        The study cannot be run as it is.
 
     """
     match study:

@@ -1,4 +1,4 @@
-"""A study's folder, read as far as it is wanted."""
+"""A study's folder; only what is asked for is read."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ class RobustnessPlan(Plan):
 
     def _notes(self, against: int) -> list[str]:
         notes = [
-            "bisection presumes that failures grow with the level; of "
+            "bisection assumes that failures grow with the level; of "
             f"{self.study.runs} runs, {against} failed at a level and survived a higher one"
         ]
         if against:
@@ -127,7 +127,7 @@ class RobustnessPlan(Plan):
         if self.study.design != "random":
             notes.append(
                 f"the parts are a {self.study.design} design, not independent draws, which the "
-                "interval presumes; it is then a guide only"
+                "interval assumes; it is then only a guide"
             )
         return notes
 

@@ -39,12 +39,12 @@ def run_study(
     progress: Callable[[Progress], None] | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> StudyResult:
-    """Run a study into a folder, or go on with it.
+    """Run a study into a folder, or continue it.
 
     The folder receives ``manifest.json`` first, then the pieces as they finish, then the summary,
-    its tables and figures. A study that was ended, in whatever way, goes on with ``resume``:
-    finished pieces are read and not computed again, and all files are the same bytes as those of a
-    study that was never ended.
+    its tables and figures. A study that was interrupted, in whatever way, continues with
+    ``resume``: finished pieces are read and not computed again, and all files have the same bytes
+    as those of a study that was never interrupted.
 
     Parameters
     ----------
@@ -53,14 +53,14 @@ def run_study(
     out : str or Path
         The folder; made if it is missing.
     resume : bool, optional
-        Whether to go on with a study that the folder holds. Without one, it begins.
+        Whether to continue a study that the folder holds; a new one is started otherwise.
     threads : int, optional
         Left out: one for each processor. The results do not depend on it.
     progress : callable, optional
         Called about 20 times a second with a `Progress`.
     notice : callable, optional
-        Called with a sentence when a piece that is not the one that was written, be it damaged,
-        edited or of another study, is computed again.
+        Called with a sentence when a piece is computed again because it is damaged, edited or from
+        another study.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def run_study(
         The study contradicts itself, an option is not valid, or the folder holds another study;
         nothing has run then.
     OutputError
-        The folder can not be written, or the disk is full; finished pieces stay.
+        The folder cannot be written, or the disk is full; finished pieces stay.
     KeyboardInterrupt
         Ctrl-C; finished pieces stay.
 

@@ -119,8 +119,8 @@ class SensitivityPlan(Plan):
     def _notes(self, without: Mapping[str, str]) -> list[str]:
         notes = [
             "first order: the share of a metric's variance that an input explains by itself; total "
-            "order: with all that it takes part in; errors are half widths of bootstrap intervals "
-            f"at {percent(self.study.sensitivity.confidence)}"
+            "order: including all interactions with others; errors are half widths of bootstrap "
+            f"intervals at {percent(self.study.sensitivity.confidence)}"
         ]
         reasons: dict[str, list[str]] = {}
         for name, reason in without.items():
@@ -154,8 +154,8 @@ def _salib(module: str) -> Any:  # noqa: ANN401 - has no type stubs
         return import_module(f"SALib.{module}")
     except ImportError:
         raise StudyError(
-            "SALib is not installed, which sensitivity studies take their samples and indices "
-            "from; install it with: pip install 'breakaway[sensitivity]'"
+            "SALib is not installed, and sensitivity studies need it; install it with: pip install "
+            "'breakaway[sensitivity]'"
         ) from None
 
 
@@ -169,7 +169,7 @@ def _unusable(columns: list[Array], diverged: int) -> str | None:
         )
     missing = sum(int((~np.isfinite(column)).sum()) for column in columns)
     if missing:
-        return f"not there in {missing} of {total} runs"
+        return f"missing in {missing} of {total} runs"
     # Rounding alone is no variance to be shared out.
     spread = max(float(np.ptp(column)) for column in columns)
     if spread <= 1e-12 * max(float(np.abs(column).max()) for column in columns):
@@ -181,7 +181,7 @@ def _strongest(rows: list[Row], metric: str) -> str:
     indices = [row for row in rows if row["metric"] == metric]
     top = max(indices, key=lambda row: float(row["total_order"]))
     return (
-        f"{metric}: the largest index has {top['input']}, total order {top['total_order']:.2f} "
+        f"{metric}: {top['input']} has the largest index, total order {top['total_order']:.2f} "
         f"± {top['total_order_error']:.2f}, first order {top['first_order']:.2f} "
         f"± {top['first_order_error']:.2f}"
     )

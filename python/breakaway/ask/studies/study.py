@@ -48,7 +48,7 @@ class SweepTable(StudyModel):
 
 
 class SweepStudy(StudyBase):
-    """What becomes of the extraction over a grid of values, or over many parts.
+    """What happens to the extraction over a grid of values, or over many parts.
 
     Every point of the grid is a scenario of its own: what it leaves open, such as gains by pole
     placement, is designed for it. All points have the same run numbers, and so the same draws.
@@ -82,7 +82,7 @@ class SweepStudy(StudyBase):
             )
         if not grid and not self.draws():
             raise StudyError(
-                "sweep.grid: is empty, vary too, and disturbance.var is 0: nothing differs; give "
+                "sweep.grid: is empty, so is vary, and disturbance.var is 0: nothing differs; give "
                 "values to sweep, or distributions"
             )
         self.refuse_equal_runs(grid)
@@ -90,24 +90,24 @@ class SweepStudy(StudyBase):
 
 
 class RobustnessTable(LevelsTable):
-    """How far robustness is sought, and what it means."""
+    """The levels that are searched, and what counts as survived."""
 
     over: Name
-    """The number whose largest survived level is sought, by dotted path, such as
+    """The number whose largest survived level is searched for, by dotted path, such as
     "disturbance.var"; or "part_scale", which multiplies the spread of everything in vary."""
     failure: list[Failure] = Field(default_factory=lambda: list(FAILURES), min_length=1)
     """Outcomes that count as failure."""
     failure_probability_max: Share
     """A level is survived where the failure probability is shown to be at most this."""
     confidence: Share = 0.95
-    """How surely: confidence of the one-sided bound of Clopper and Pearson."""
+    """Confidence of that: of the one-sided bound of Clopper and Pearson."""
 
     @model_validator(mode="after")
     def _is_survived_or_not(self) -> Self:
         if len(set(self.failure)) < len(self.failure):
             raise ValueError(f"failure: {self.failure!r} names an outcome twice; name each once")
         if self.over == PART_SCALE and self.low <= 0.0:
-            raise ValueError(f"low: {self.low!r} is not > 0; parts without any spread are no parts")
+            raise ValueError(f"low: {self.low!r} is not > 0; parts need some spread")
         return self
 
 
@@ -129,7 +129,7 @@ class RobustnessStudy(StudyBase):
     ... )
     Traceback (most recent call last):
         ...
-    breakaway.errors.StudyError: runs: 1000 runs can not show a failure probability <= 0.001 ...
+    breakaway.errors.StudyError: runs: 1000 runs cannot show a failure probability <= 0.001 ...
 
     """
 
@@ -144,7 +144,7 @@ class RobustnessStudy(StudyBase):
         needed = runs_needed(asked.failure_probability_max, asked.confidence)
         if self.runs < needed:
             raise StudyError(
-                f"runs: {self.runs} runs can not show a failure probability <= "
+                f"runs: {self.runs} runs cannot show a failure probability <= "
                 f"{asked.failure_probability_max:g} at {percent(asked.confidence)} confidence, "
                 f"even without any failure; give {needed} or more"
             )
@@ -218,13 +218,13 @@ class SensitivityStudy(StudyBase):
             raise StudyError(f"runs: {self.runs} base samples are not <= {2**17}; give fewer")
         if self.design != "random":
             raise StudyError(
-                f"design: {self.design!r} has no place here; Sobol indices have a design of their "
-                "own: leave it out"
+                f"design: {self.design!r} does not apply here; Sobol indices have their own "
+                "design: leave it out"
             )
         for path, distribution in self.vary.items():
             if isinstance(distribution, Samples) and distribution.rows == "shared":
                 raise StudyError(
-                    f"vary.{path}.rows: 'shared' ties numbers to each other; Sobol indices presume "
+                    f"vary.{path}.rows: 'shared' ties numbers to each other; Sobol indices assume "
                     "independent ones: give 'independent'"
                 )
         return self
@@ -249,8 +249,8 @@ class ComparedController(StudyModel):
         for path in self.changes:
             if path.split(".")[0] not in allowed:
                 raise ValueError(
-                    f"changes: {path} is none of {', '.join(allowed)}; all controllers meet "
-                    "the same parts: change it in the study's own changes"
+                    f"changes: {path} is not one of {', '.join(allowed)}; all controllers meet the "
+                    "same parts: change it in the study's own changes"
                 )
         return self
 

@@ -252,7 +252,7 @@ def in_words(conclusion: Row, rows: Sequence[Row]) -> str:
     verdict, claim = conclusion["verdict"], _claim(conclusion)
     flag = ""
     if verdict.startswith("only"):
-        flag = ", which nothing else that was asked shows: it may be a property of the model alone"
+        flag = ", and nothing else that was asked shows it: it may be a property of this model only"
     by = f" ({'; '.join(parts)})" if parts else ""
     return f"{verdict}{by}: {claim}{flag} [{', '.join(said)}]"
 

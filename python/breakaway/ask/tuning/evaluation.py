@@ -1,4 +1,4 @@
-"""A method that was tried, what it is worth, and how far it is from what is asked for."""
+"""A method that was tried, its scores, and how far it is from what is asked for."""
 
 from __future__ import annotations
 
@@ -164,9 +164,9 @@ def pareto_front(tuning: Tuning, evaluations: Sequence[Evaluation]) -> list[Eval
 def recommended(tuning: Tuning, front: Sequence[Evaluation]) -> Evaluation:
     """Give the point of a front that its first objective speaks for, then the others.
 
-    The points whose first objective lies within the interval of the best one can not be told from
-    it by so many parts. Among these counts who is nearest to the best of every other objective,
-    each scaled to their range.
+    The points whose first objective lies within the interval of the best one cannot be told apart
+    from it with so few parts. Among these counts who is nearest to the best of every other
+    objective, each scaled to their range.
     """
     kind = tuning.objective_kinds[0]
     best = front[0].worst[kind.name]

@@ -16,7 +16,7 @@ from breakaway.model.scenario.model import numbers_of, valid_range
 def number_paths(method: Method) -> list[str]:
     """Give the paths of all numbers of a method that can be tuned.
 
-    What a method is told of each part is not among them.
+    What a method knows of each part is not among them.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def check_number(method: Method, path: str, values: Mapping[str, float]) -> None
     known = number_paths(method)
     if path in method.knows:
         raise StudyError(
-            f"tune.{path}: is told to the method for each part (knows); take it out of one of them"
+            f"tune.{path}: is set for each part already (knows); take it out of one of the two"
         )
     if path not in known:
         near = difflib.get_close_matches(path, known, n=1, cutoff=0.6)

@@ -92,19 +92,19 @@ class TunedNumber(StudyModel):
     high: float
     """Largest value."""
     log: bool = False
-    """Whether its logarithm is searched evenly: for numbers whose size is not known."""
+    """Whether to search its logarithm evenly: for numbers of unknown magnitude."""
 
     @model_validator(mode="after")
     def _is_a_range(self) -> Self:
         if not self.low < self.high:
             raise ValueError(f"low: {self.low!r} is not < high = {self.high!r}; swap them")
         if self.log and self.low <= 0.0:
-            raise ValueError(f"low: {self.low!r} is not > 0; logarithms need that")
+            raise ValueError(f"low: {self.low!r} is not > 0; a logarithmic scale needs that")
         return self
 
 
 class ScoreBound(StudyModel):
-    """What a score has to reach, or may not exceed.
+    """What a score must reach, or must not exceed.
 
     Examples
     --------
@@ -141,7 +141,7 @@ class PartRange(StudyModel):
 
 
 class Tuning(StudyModel):
-    """A method, the ranges of some of its numbers, and the scores that are to become good.
+    """A method, the ranges of some of its numbers, and the scores to improve.
 
     Examples
     --------
@@ -173,11 +173,11 @@ class Tuning(StudyModel):
     laws: Annotated[list[Law], Field(min_length=1)] = Field(default_factory=_lugre)
     """Friction laws of the joints. Every score is that of the law where it is worst."""
     objectives: Annotated[list[Name], Field(min_length=1, max_length=4)]
-    """Scores that are to become good: shares become large, quantiles of metrics small."""
+    """Scores to improve: shares are made large, quantiles of metrics small."""
     constraints: Annotated[dict[str, ScoreBound], BeforeValidator(_bounds)] = Field(
         default_factory=dict
     )
-    """What other scores have to reach, by their names."""
+    """What other scores must reach, by their names."""
     tune: Annotated[
         dict[str, TunedNumber],
         BeforeValidator(_ranges, json_schema_input_type=ByPath[TunedNumber]),
@@ -187,9 +187,9 @@ class Tuning(StudyModel):
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Seed of parts, disturbances and noise."""
     training_runs: Annotated[int, Field(ge=1, le=100_000_000)] = 256
-    """Parts that are tuned on: numbers 0 to training_runs - 1."""
+    """Parts to tune on: numbers 0 to training_runs - 1."""
     test_runs: PartRange = PartRange(first=TEST_FIRST, runs=TEST_RUNS)
-    """Parts that the tuned method is scored on and that tuning never sees."""
+    """Parts that tuning never sees and that the tuned method is scored on."""
     evaluations: Annotated[int, Field(ge=1, le=EVALUATIONS_MAX)] = 100
     """How many methods are tried."""
     sampler_seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
@@ -265,8 +265,8 @@ def _check_name(name: str) -> None:
     most = LONGEST_NAME - len(TUNED_LAST)
     if len(name) > most:
         raise StudyError(
-            f"method.name: {shown(name)} has {len(name)} characters; tuned methods are named by it "
-            f"and {TUNED_LAST[:6]!r} or more: give a name of at most {most} characters"
+            f"method.name: {shown(name)} has {len(name)} characters; the names of tuned methods "
+            f"add {TUNED_LAST[:6]!r} or more to it: give a name of at most {most} characters"
         )
 
 
@@ -309,7 +309,7 @@ def _checked_kind(field: str, name: str, method: Method) -> ScoreKind:
         raise StudyError(f"{field}: {error}") from None
     if kind.metric in PIEZO_METRICS and not _has_piezo(method):
         raise StudyError(
-            f"{field}: {name!r} is of a piezo, which the method does not have; give another score"
+            f"{field}: {name!r} needs a piezo, which the method does not have; give another score"
         )
     return kind
 

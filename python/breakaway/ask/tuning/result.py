@@ -1,4 +1,4 @@
-"""The folder of a tuning, read as far as it is wanted."""
+"""The folder of a tuning; only what is asked for is read."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class TuningResult(OneLine, DurableFolder):
 
     @property
     def front(self) -> list[Method]:
-        """The methods that none is better than, best in the first objective first.
+        """The methods that no other beats, best in the first objective first.
 
         Raises
         ------

@@ -44,12 +44,12 @@ class TuningProgress(Progress):
     """How far a tuning is; its runs are parts, of which the last ones are on unseen parts."""
 
     evaluations_done: int
-    """Evaluations that are finished, those found on disk among them."""
+    """Evaluations that are finished, including those found on disk."""
     evaluations_max: int
     """Evaluations in all."""
     best: Mapping[str, float] = field(default_factory=dict)
-    """Objectives of the evaluation that would be recommended now, on training parts; maybe none
-    yet."""
+    """Objectives of the evaluation that would be recommended now, on training parts; empty at
+    first."""
 
 
 def tune(
@@ -64,9 +64,9 @@ def tune(
 ) -> TuningResult:
     """Tune a method on training parts into a folder, and score what was found on unseen ones.
 
-    Every evaluation is on the disk before the next begins. A tuning that was ended, in whatever
-    way, goes on with ``resume``, also with more evaluations than before, and all files are the same
-    bytes as those of a tuning that was never ended, on any number of threads.
+    Every evaluation is on the disk before the next begins. A tuning that was interrupted, in
+    whatever way, continues with ``resume``, also with more evaluations than before, and all files
+    have the same bytes as those of a tuning that was never interrupted, on any number of threads.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def tune(
     evaluations : int, optional
         How many methods are tried. Left out: as the tuning says.
     resume : bool, optional
-        Whether to go on with the tuning that the folder holds. Without one, it begins.
+        Whether to continue the tuning that the folder holds; a new one is started otherwise.
     threads : int, optional
         Left out: one for each processor. The results do not depend on it.
     progress : callable, optional
@@ -95,7 +95,7 @@ def tune(
         optuna is not installed, an option is not valid, or the folder holds another tuning;
         nothing has run then.
     OutputError
-        The folder can not be written, or the disk is full; finished evaluations stay.
+        The folder cannot be written, or the disk is full; finished evaluations stay.
     KeyboardInterrupt
         Ctrl-C; finished evaluations stay.
 
@@ -204,8 +204,8 @@ class _EvaluationRunner:
                 self._runner.count(runs, found=True)
                 return Evaluation.of_json(kept[number])
             self._runner.say(
-                f"{self._evaluations.path.name}: evaluation {number} is another one; it and what "
-                "follows is computed again"
+                f"{self._evaluations.path.name}: evaluation {number} is a different one; it and "
+                "all that follow are computed again"
             )
             del kept[number:]
             self._evaluations.replace(kept)

@@ -101,7 +101,7 @@ def _optuna() -> Any:  # noqa: ANN401 - an optional package
         ) from None
     if not hasattr(optuna.trial.Trial, "set_constraint"):
         raise StudyError(
-            f"tuning needs optuna >= 5, and {optuna.__version__} is installed; install it with: "
+            f"tuning needs optuna >= 5, but {optuna.__version__} is installed; install it with: "
             "pip install --upgrade 'breakaway[tune]' 'optuna>=5'"
         )
     return optuna

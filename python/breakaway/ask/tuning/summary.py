@@ -16,8 +16,9 @@ Row = dict[str, Any]
 WORST = "worst"
 """What stands for the law where a score is worst."""
 RULE = (
-    "recommended is, on the training parts, among the points of the front whose first objective is "
-    "within the interval of the best one, the point nearest to the best of the other objectives"
+    "the recommendation is made on the training parts: of the points of the front whose first "
+    "objective is within the interval of the best one, it is the closest to the best of the other "
+    "objectives"
 )
 
 
@@ -30,7 +31,7 @@ class Found:
     evaluations: Sequence[Evaluation]
     """All evaluations."""
     front: Sequence[Evaluation]
-    """Evaluations that none is better than, best in the first objective first."""
+    """Evaluations that no other beats, best in the first objective first."""
     best: Evaluation | None
     """The recommended one; None where no evaluation met the constraints."""
     start_training: Laws
@@ -190,7 +191,7 @@ def verdict(kind: ScoreKind, training: Score, unseen: Score) -> str:
 
 
 VERDICTS = {
-    "overfitted": "overfitted: the intervals do not overlap; believe the unseen score alone",
+    "overfitted": "overfitted: the intervals do not overlap; trust only the unseen score",
     "perhaps overfitted": "perhaps overfitted: each is outside the interval of the other",
     "not shown": "no overfitting is shown",
 }
@@ -204,8 +205,8 @@ def sentences(found: Found) -> list[str]:
     count = f"{len(found.evaluations)} evaluations"
     said = [
         f"evaluation {best.number} of {count} is recommended"
-        + (f", one of {len(found.front)} that none is better than" if len(found.front) > 1 else "")
-        + ("; it is the method as it was" if best.numbers == tuning.start else "")
+        + (f", one of {len(found.front)} that no other beats" if len(found.front) > 1 else "")
+        + ("; it is the method as it was before tuning" if best.numbers == tuning.start else "")
     ]
     for row in overfitting_rows(found):
         low, high = _short(row["unseen_low"]), _short(row["unseen_high"])
@@ -239,9 +240,7 @@ def _nothing(found: Found) -> str:
     tried = [e for e in found.evaluations if e.laws is not None]
     if not tried:
         last = found.evaluations[-1].refused
-        return (
-            f"every one of {len(found.evaluations)} evaluations was refused, the last one: {last}"
-        )
+        return f"all {len(found.evaluations)} evaluations were refused, the last one with: {last}"
 
     def far(evaluation: Evaluation) -> float:
         return sum(violations_of(found.tuning, evaluation).values())
@@ -249,8 +248,8 @@ def _nothing(found: Found) -> str:
     nearest = min(tried, key=far)
     missed = [name for name, v in violations_of(found.tuning, nearest).items() if v]
     return (
-        f"none of {len(found.evaluations)} evaluations met all constraints, so that none is "
-        f"recommended; the nearest is evaluation {nearest.number}, which misses "
+        f"none of {len(found.evaluations)} evaluations met all constraints, so none is "
+        f"recommended; the closest is evaluation {nearest.number}, which misses "
         f"{', '.join(missed)}: loosen it, or try more"
     )
 
@@ -260,7 +259,7 @@ def notes(found: Found) -> list[str]:
     tuning = found.tuning
     said = [
         "intervals are exact for parts drawn from the population; that of a training score is too "
-        "good, for the method was chosen by it",
+        "optimistic, because the method was chosen by it",
         "a part that was not freed is infinitely bad in every quantile",
     ]
     if len(tuning.laws) > 1:
@@ -268,7 +267,7 @@ def notes(found: Found) -> list[str]:
     if len(found.front) > 1:
         said.append(RULE)
     if tuning.start is None:
-        said.append("the method as it was is outside the ranges, and was none of the evaluations")
+        said.append("the method before tuning is outside the ranges and was not evaluated")
     refused = sum(evaluation.laws is None for evaluation in found.evaluations)
     if refused:
         said.append(f"{refused} evaluations were refused by a scenario; evaluations.csv says why")

@@ -46,7 +46,7 @@ WIDEST = 6.0
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FittedDistribution:
-    """A distribution fitted to values of which some are lower bounds.
+    """A distribution fitted to values, some of which are lower bounds.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class FittedDistribution:
 
     @property
     def seen(self) -> int:
-        """Number of values that are no lower bounds."""
+        """Number of values that are not lower bounds."""
         return int(np.count_nonzero(~self.is_lower_bound))
 
     @property
@@ -113,7 +113,7 @@ def fit_distribution(
     kind: Kind = "log_normal",
     confidence: float = 0.95,
 ) -> FittedDistribution:
-    """Fit a distribution to values of which some are lower bounds, by maximum likelihood.
+    """Fit a distribution to values, some of which are lower bounds, by maximum likelihood.
 
     ::
 
@@ -148,8 +148,8 @@ def fit_distribution(
     Raises
     ------
     LogError
-        There are fewer than three values, fewer than two different ones that are no lower
-        bounds, a value is out of range, or a setting is.
+        There are fewer than three values, fewer than two different ones that are not lower bounds,
+        a value is out of range, or a setting is.
 
     Notes
     -----
@@ -375,7 +375,7 @@ def _checked(
     if array.ndim != 1 or array.shape != bound.shape:
         raise LogError(
             f"values of shape {array.shape} and lower bounds of shape {bound.shape}; both must be "
-            "one-dimensional and of one length"
+            "one-dimensional and of the same length"
         )
     if len(array) < FEWEST_VALUES:
         raise LogError(
@@ -390,8 +390,8 @@ def _checked(
     seen = np.unique(array[~bound])
     if len(seen) < FEWEST_SEEN or np.ptp(seen) <= 1e-9 * np.abs(seen).max():
         raise LogError(
-            f"{np.count_nonzero(~bound)} of {len(array)} values are no lower bounds, with "
-            f"{len(seen)} different ones; at least {FEWEST_SEEN} are needed, or the spread can be "
-            "anything: record more parts without gaps at the peak"
+            f"{np.count_nonzero(~bound)} of {len(array)} values are not lower bounds, {len(seen)} "
+            f"of them different; at least {FEWEST_SEEN} are needed to determine the spread: record "
+            "more parts without gaps at the peak"
         )
     return array, bound

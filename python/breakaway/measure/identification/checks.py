@@ -1,4 +1,4 @@
-"""Refuse logs and settings from which inertia and friction can not be identified."""
+"""Refuse logs and settings from which inertia and friction cannot be identified."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MINIMUM_SHARE = 0.05
 """Smallest share of the samples that must move in either direction."""
 
 SIGNIFICANCE = 3.0
-"""An estimate is told from 0 if it exceeds this many standard errors."""
+"""An estimate differs from 0 if it exceeds this many standard errors."""
 
 
 def check_settings(log: Log, lowpass_hz: float, decimation: int) -> None:
@@ -70,7 +70,7 @@ def check_motion(log: Log, motion: Motion) -> None:
             raise LogError(
                 f"{log.name}: column 'position_m' goes {word} in {100 * share:.2g} % of the rows; "
                 f"at least {100 * MINIMUM_SHARE:g} % are needed in each direction, or Coulomb "
-                "friction can not be told from a constant force: record both directions"
+                "friction cannot be told apart from a constant force: record both directions"
             )
     if not np.any(log.force_n):
         raise LogError(
@@ -89,7 +89,7 @@ def check_mass(log: Log, mass_kg: float, error_kg: float) -> None:
             "against each other; flip the sign of one, or synchronize them"
         )
     raise LogError(
-        f"{log.name}: the mass can not be determined ({mass_kg:.4g} ± {error_kg:.2g} kg, it must "
+        f"{log.name}: the mass cannot be determined ({mass_kg:.4g} ± {error_kg:.2g} kg, it must "
         f"exceed {SIGNIFICANCE:g} standard errors): accelerate harder, or measure the force "
         "with less noise; or name a law (--law), which can do without the mass"
     )

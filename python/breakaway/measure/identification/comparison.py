@@ -48,7 +48,7 @@ def compare_laws(
     laws: Sequence[LawName] = LAWS,
     **settings: Any,  # noqa: ANN401 - handed on to `identify`, which checks them
 ) -> tuple[ComparedLaw, ...]:
-    """Fit several laws and say which pay for their parameters.
+    """Fit several laws and report which ones pay for their parameters.
 
     Each is judged by the best of the simpler ones that paid: a law pays if it predicts the held-out
     rows better by 1 % and has an AIC lower by 2. Residuals correlate, so the AIC counts effective
@@ -102,7 +102,7 @@ def compare_laws(
                 f"{start_s:g} s to {end_s:g} s; fit other rows than are predicted"
             )
     if not laws or "law" in settings:
-        raise LogError("laws: name the laws that are compared, from simple to rich")
+        raise LogError("laws: is empty; name the laws to compare, from simple to rich")
     fits: list[Identification] = []
     for law in laws:
         simpler = dict(fits[-1].values) if fits else {}

@@ -88,7 +88,7 @@ class BreakawayEvent:
     is_lower_bound : bool
         Whether the joint may have held more than was recorded.
     reason : str
-        Why it is a lower bound; empty where it is none.
+        Why it is a lower bound; empty where it is not one.
     force_noise_n : float
         Standard deviation of the force's noise.
     breakaway_error_n : float
@@ -120,9 +120,9 @@ class BreakawayEvent:
 
 @dataclass(frozen=True, kw_only=True)
 class BreakawayReport(OneLine):
-    """What a log tells about breakaway, and why it does not tell more.
+    """What a log shows of breakaway, and why it does not show more.
 
-    ``offset_n`` is None, with its reason, where it can not be estimated. ``gaps_s`` has the
+    ``offset_n`` is None, with its reason, where it cannot be estimated. ``gaps_s`` has the
     stamps before and after each gap. ``settings`` has those that the search was made with.
     """
 
@@ -438,8 +438,8 @@ class _Search:
         worth = max(SIGNIFICANCE * self.noise_n, WORTH * self.friction_n)
         if "a gap" in reason and self._excess(start, peak) <= worth:
             return (
-                f"the start at {t_s[motion.first]:.6g} s: {reason}; what was recorded of the load "
-                "hardly exceeds the sliding level, so its breakaway was not recorded"
+                f"the start at {t_s[motion.first]:.6g} s: {reason}; the recorded load hardly "
+                "exceeds the sliding level, so its breakaway was not recorded"
             )
         load_seen = not self._loaded_at_start(start, peak)
         return self._event(start, peak, reason, load_seen=load_seen)
@@ -474,7 +474,7 @@ class _Search:
     def _already_loaded(self, start: _Start) -> str:
         return (
             f"the log starts with the load already growing, at {start.load[0]:.4g} N; a higher "
-            "peak before it is not excluded"
+            "peak may lie before it"
         )
 
     def _hidden(self, start: _Start, peak: int) -> str:

@@ -124,11 +124,11 @@ def _velocity_noise(rows: Rows, noise_m: float) -> float:
 
 
 def _check_dissipation(log: Log, force: Array, v: Array) -> None:
-    """Raise `LogError` where the force brakes on the whole: friction can not drive."""
+    """Raise `LogError` where the force brakes on the whole: friction cannot drive."""
     power = force * v
     if float(np.sum(power)) < -BRAKING * float(np.sum(np.abs(power))):
         raise LogError(
-            f"{log.name}: force and velocity oppose each other on the whole, as if friction drove "
+            f"{log.name}: force and velocity oppose each other on balance, as if friction drove "
             "the part; flip the sign of one: 'sign = -1' in the mapping, or the channel's own"
         )
 

@@ -108,7 +108,7 @@ def prepare(
 
 @dataclass(frozen=True)
 class Identifiability:
-    """What a log can determine, before anything is fitted.
+    """What a log can determine, known before anything is fitted.
 
     ``expected_error`` are the smallest standard errors that any fit can reach, near the first
     guess, if the law holds and the sensors' white noise is all that disturbs (Cramér and Rao);

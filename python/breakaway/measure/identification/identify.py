@@ -331,14 +331,14 @@ class _Found:
             if parameter.may_vanish:
                 ends = (max(ends[0], 0.0), ends[1])
                 if not error < NOT_TOLD_FROM_0 * value:
-                    about = f"known to {100 * error / value:.0f} % only" if ends[0] > 0.0 else ""
-                    remark = about or f"not told from 0, at most {ends[1]:.3g} in its unit"
+                    about = f"known only to {100 * error / value:.0f} %" if ends[0] > 0.0 else ""
+                    remark = about or f"not distinct from 0, at most {ends[1]:.3g} in its unit"
             elif not math.isfinite(error):
-                remark = "can not be told apart from others"
+                remark = "cannot be told apart from others"
             elif at_end:
                 remark = "at the end of its range"
             elif parameter.positive and not error < NOT_IDENTIFIABLE:
-                remark = f"known within a factor of {math.exp(min(2 * error, 50.0)):.2g} only"
+                remark = f"known only within a factor of {math.exp(min(2 * error, 50.0)):.2g}"
             told = not remark
             out.append(Estimate(parameter.name, value, error * slope[i], *ends, told, remark))
         return out
@@ -348,8 +348,8 @@ class _Found:
         out = []
         if percent > POOR_PERCENT:
             out.append(
-                f"this law explains the log poorly, it is {percent:.0f} % off: the parameters mean "
-                "little; try another law, motion or mapping"
+                f"this law explains the log poorly, with an error of {percent:.0f} %: the "
+                "parameters mean little; try another law, motion or mapping"
             )
         places = [
             i for i, one in enumerate(self.asked.problem.layout.free) if "stribeck" in one.name
@@ -359,7 +359,7 @@ class _Found:
             if share > NOISY_SPEED:
                 out.append(
                     f"noise of the position makes the velocity uncertain by {100 * share:.2g} % of "
-                    "v_s, which draws F_s / F_c and v_s beyond their intervals: lower lowpass_hz, "
+                    "v_s, which biases F_s / F_c and v_s beyond their intervals: lower lowpass_hz, "
                     "or measure the position with less noise"
                 )
         return out
@@ -374,7 +374,7 @@ class _Found:
     ) -> list[str]:
         notes = []
         if not complete:
-            notes.append("stopped before it was done: these are the best parameters so far")
+            notes.append("stopped before it finished: these are the best parameters so far")
         elif not converged:
             notes.append(f"not converged within {MOST_EVALUATIONS} evaluations")
         notes.append(str(self.asked.excitation))
@@ -384,7 +384,7 @@ class _Found:
             count = len(self.asked.problem.measured)
             notes.append(
                 f"residuals correlate over about {known.window} rows: {count} rows tell as much as "
-                f"{known.weight * count:.0f} independent ones, which the errors allow for"
+                f"{known.weight * count:.0f} independent ones, and the errors allow for that"
             )
         notes += [str(finding) for finding in self.log.findings]
         return notes

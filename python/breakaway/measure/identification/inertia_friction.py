@@ -101,7 +101,7 @@ Fit = TypeVar("Fit", SymmetricFit, AsymmetricFit)
 
 @dataclass(frozen=True, kw_only=True)
 class InertiaFrictionFit:
-    """Both fits of one log, the settings they were made with, and what they can not tell."""
+    """Both fits of one log, the settings they were made with, and what they cannot tell."""
 
     symmetric: SymmetricFit
     asymmetric: AsymmetricFit
@@ -160,7 +160,7 @@ def identify_inertia_friction(
     ------
     LogError
         A setting is out of range; the log is uneven, too short, never moves or moves one way
-        only; its force is 0; parameters can not be told apart; or the mass is not
+        only; its force is 0; parameters cannot be told apart; or the mass is not
         significantly positive. The message names the remedy.
 
     Notes
@@ -237,7 +237,7 @@ def _stiction(log: Log, columns: Array, force: Array) -> str:
     try:
         fit = least_squares(log, (*SYMMETRIC, "stiction peak"), columns, force)
     except LogError:
-        return "stiction peak: this log can not tell"
+        return "stiction peak: this log cannot tell"
     excess, error = float(fit.values[4]), float(fit.errors[4]) * _inflation(fit)
     level = PEAK * abs(float(fit.values[2]))
     figure = f"friction below {100 * LOW_SPEED:g} % of the largest speed is {excess:+.2g} ± "
@@ -246,22 +246,22 @@ def _stiction(log: Log, columns: Array, force: Array) -> str:
         return f"stiction peak: seen, but not identified; {figure}"
     if excess + SIGNIFICANCE * error < level:
         return f"stiction peak: none; {figure}"
-    return f"stiction peak: this log can not tell; {figure}"
+    return f"stiction peak: this log cannot tell; {figure}"
 
 
 def _cautions(log: Log, fit: Solution) -> list[str]:
     notes = []
     if fit.residual_autocorrelation > CORRELATED:
         notes.append(
-            f"successive residuals correlate ({fit.residual_autocorrelation:.2f}): something "
-            "acts that the model lacks, and the parameters are about "
-            f"{_inflation(fit):.1f} times less certain than the standard errors say"
+            f"successive residuals correlate ({fit.residual_autocorrelation:.2f}): the model lacks "
+            f"something, and the parameters are about {_inflation(fit):.1f} times less certain "
+            "than the standard errors say"
         )
     if fit.residual_autocorrelation < -CORRELATED / 2:
         notes.append(
             f"successive residuals alternate ({fit.residual_autocorrelation:.2f}): noise of the "
-            "position reaches the acceleration and draws the mass toward 0, beyond its standard "
-            "error; raise decimation"
+            "position reaches the acceleration and biases the mass toward 0 by more than its "
+            "standard error; raise decimation"
         )
     for name, value, error in zip(SYMMETRIC[1:3], fit.values[1:3], fit.errors[1:3], strict=True):
         if value < -SIGNIFICANCE * error:

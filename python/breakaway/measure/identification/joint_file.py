@@ -1,4 +1,4 @@
-"""The joint file: what one log told about a joint, and what it did not."""
+"""The joint file: what one log shows of a joint, and what it does not."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class Draws(Model):
     """Joints that are as likely as any other, given the log: a row of all columns is one joint.
 
     ``source`` says what they were drawn from: the posterior, or the normal distribution that the
-    standard errors and correlations give, of which values that no joint can have are drawn anew.
+    standard errors and correlations give, of which values that no joint can have are drawn again.
     """
 
     source: Text
@@ -298,7 +298,7 @@ class JointFile(Model):
         """
         if self.draws is None:
             raise ScenarioError(
-                "joint file: has no draws, so no spread is known; identify the joint anew"
+                "joint file: has no draws, so its spread is not known; identify the joint again"
             )
         return {
             path: Samples(values=tuple(values), rows="shared")
@@ -316,7 +316,7 @@ class JointFile(Model):
         Raises
         ------
         OutputError
-            The folder can not be made or not be written to, or ``path`` is a folder.
+            The folder cannot be made or not be written to, or ``path`` is a folder.
 
         """
         check_arguments(JointFile.save, locals(), LogError)
@@ -401,7 +401,7 @@ def _not_identified(found: Identification, fields: Mapping[str, float]) -> dict[
             keys = ("stiction_ratio" if name == "stiction_n" else name, _sided(name))
             why = next((reasons[key] for key in keys if key in reasons), "it was held in the fit")
             out[field] = why
-    out["joint.engagement_length_m"] = "how far the guide reaches is known from the drawing"
+    out["joint.engagement_length_m"] = "the length of the guide is known from the drawing"
     return out
 
 

@@ -203,7 +203,7 @@ def check_law(law: str, asymmetric: bool, position_dependent: bool) -> Law:
     Raises
     ------
     LogError
-        There is none.
+        There is no such law.
 
     """
     for name in LAWS:

@@ -37,7 +37,7 @@ FIELDS = {"breakaway_force_n": "joint.stiction_n", "sliding_force_n": "joint.cou
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Population(OneLine):
-    """How parts differ in what it takes to free them.
+    """How much the force that frees a part differs from part to part.
 
     Attributes
     ----------
@@ -78,8 +78,7 @@ class Population(OneLine):
     def distributions(self) -> dict[str, LogNormal | Normal]:
         """Return the distributions by field of a scenario, for ``vary`` of a study.
 
-        Each number is drawn on its own; `correlated` keeps what they have to do with each
-        other.
+        Each number is drawn on its own; `correlated` keeps their correlation.
         """
         return {
             FIELDS[name]: self.fits[name].distribution() for name in FIELDS if name in self.fits
@@ -111,8 +110,8 @@ class Population(OneLine):
             raise LogError(f"count is {count}; it must be 1 to 1000000")
         if self.correlation is None:
             raise LogError(
-                "fewer than 3 parts show both breakaway and sliding force, so what they have to do "
-                "with each other is not known: use distributions(), or record more parts"
+                "fewer than 3 parts show both breakaway and sliding force, so their correlation is "
+                "not known: use distributions(), or record more parts"
             )
         rng = np.random.Generator(np.random.Philox(seed))
         hold, slide = (self.fits[name].distribution() for name in FIELDS)
@@ -148,8 +147,8 @@ def fit_population(
 
     Each log is a part, unless ``parts`` says which logs belong to one. Of a part with several
     events the median counts; it is a lower bound where one of the events at or below the median
-    is, for a larger value in its place may raise the median. `fit_distribution` tells how
-    lower bounds enter.
+    is, because a larger value in its place may raise the median. `fit_distribution` says how lower
+    bounds enter.
 
     Parameters
     ----------
@@ -302,8 +301,8 @@ def _cautions(name: str, fit: FittedDistribution) -> list[str]:
     if fit.distance > fit.distance_limit and not fit.censored:
         notes.append(
             f"{name}: the {fit.kind} distribution misses the recorded one by {fit.distance:.2g}, "
-            f"more than {fit.distance_limit:.2g}, which chance makes in 5 % of cases: the parts "
-            "may be of more than one kind"
+            f"more than {fit.distance_limit:.2g}, which chance alone exceeds in 5 % of cases: the "
+            "parts may be of more than one kind"
         )
     best = min(fit.aic, key=lambda kind: fit.aic[kind])
     if best != fit.kind and fit.aic[fit.kind] - fit.aic[best] > 2.0:

@@ -68,7 +68,7 @@ def least_squares(log: Log, names: tuple[str, ...], columns: Array, force: Array
             name for name, part in zip(names, right[-1], strict=True) if abs(float(part)) > 0.3
         ]
         raise LogError(
-            f"{log.name}: {' and '.join(mixed)} can not be told apart (condition number "
+            f"{log.name}: {' and '.join(mixed)} cannot be told apart (condition number "
             f"{condition:.3g}, at most {CONDITION_LIMIT:g}); record a motion that changes speed "
             "throughout, in both directions, for example a sum of sines"
         )

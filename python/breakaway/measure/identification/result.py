@@ -230,7 +230,7 @@ class Identification(OneLine):
         Notes
         -----
         Quicker than `posterior`, and rougher: parameters that are not identifiable are held, and
-        draws below 0 of those that can not be are mirrored there.
+        draws below 0 of those that cannot be are mirrored there.
 
         """
         check_arguments(Identification.draws, locals(), LogError)

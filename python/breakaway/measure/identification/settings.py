@@ -55,7 +55,7 @@ def check_free(free: Sequence[str], fixed: Mapping[str, float], names: Sequence[
                 f"free: {name!r} is not a parameter of this law; those are {', '.join(names)}"
             )
         if name in fixed:
-            raise LogError(f"free: {name!r} is fixed too; name it in one of them")
+            raise LogError(f"free: {name!r} is fixed too; name it in only one of the two")
 
 
 def checked_spans(repeats: Sequence[Span]) -> list[Span]:
@@ -70,7 +70,7 @@ def checked_spans(repeats: Sequence[Span]) -> list[Span]:
 
 
 def check_seed(seed: int) -> None:
-    """Raise `LogError` for what can not seed draws."""
+    """Raise `LogError` for what cannot seed draws."""
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise LogError(f"seed: {seed!r} is not a whole number of at least 0")
 
@@ -88,6 +88,6 @@ def check_count(law: str, parameters: Sequence[Parameter], repeats: int) -> None
     """Raise `LogError` for more parameters than the core differentiates by."""
     if len(parameters) > MOST_PARAMETERS:
         raise LogError(
-            f"repeats: {repeats} with law {law!r} make {len(parameters)} parameters, at most "
+            f"repeats: {repeats} with law {law!r} make {len(parameters)} parameters, but at most "
             f"{MOST_PARAMETERS} can be fitted; give fewer repeats"
         )

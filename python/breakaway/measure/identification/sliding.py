@@ -74,7 +74,7 @@ def estimate_offset(sliding: tuple[SlidingLevel, ...]) -> tuple[float | None, fl
     if not sliding:
         return None, None, "the part does not slide steadily; give offset_n"
     if not all(sides):
-        return None, None, "the part slides one way only; give offset_n"
+        return None, None, "the part slides only one way; give offset_n"
     means = [float(np.median([level.force_n for level in side])) for side in sides]
     variance = sum(_level_error(side) ** 2 for side in sides)
     return 0.5 * sum(means), 0.5 * math.sqrt(variance), "estimated from sliding in both directions"

@@ -100,7 +100,7 @@ def find_stretches(
         of its way, and no less than the noise allows.
     min_rest_s : float
         A shorter standstill, say at a reversal, is no rest; but at the start of a log any
-        standstill is one, for it began before.
+        standstill is one, because it began before.
     min_slip_m : float, optional
         A smaller move is presliding, and belongs to the rest. By default 1 % of the travel,
         and no less than ten standard deviations of the position's noise.
@@ -200,7 +200,7 @@ def _window(log: Log, position: Array, gaps: Places, resolution: float) -> tuple
         if 2 * np.count_nonzero(known) < len(known):
             raise LogError(
                 f"{log.name}: column 't_s': {len(gaps)} gaps in {len(known)} rows leave most rows "
-                "without neighbors, so rest and motion can not be told apart: record evenly, or "
+                "without neighbors, so rest and motion cannot be told apart: record evenly, or "
                 "raise gap_s"
             )
         counts = known & (np.abs(way) > RESOLVED * resolution)

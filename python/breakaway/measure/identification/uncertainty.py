@@ -28,7 +28,7 @@ NOT_TOLD_FROM_0 = 0.25
 
 
 SINGULAR = 1e-7
-"""Singular value, relative to the largest, below which parameters can not be told apart."""
+"""Singular value, relative to the largest, below which parameters cannot be told apart."""
 
 BURNED = 500
 """Steps of the posterior's walkers that are left out, while they forget where they began."""

@@ -1,4 +1,4 @@
-"""Which parameters a log can determine, which it can not, and what experiment would."""
+"""Which parameters a log can determine, which it cannot, and what experiment would."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Excitation:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a log determines one parameter, why, and what would."""
+    """Whether a log determines one parameter, why, and which experiment would."""
 
     parameter: str
     identifiable: bool
@@ -174,7 +174,8 @@ _LEFT_OUT = {
 def _by_error(one: Estimate, found: Mapping[str, Estimate]) -> Verdict:
     ratio = found.get("stiction_ratio")
     if one.name == "stribeck_velocity_m_per_s" and ratio and ratio.low < 1.0 < ratio.high:
-        return Verdict(one.name, False, "F_s / F_c is not told from 1: it acts on nothing", _SPEEDS)
+        because = "F_s / F_c is not distinct from 1, so it has no effect"
+        return Verdict(one.name, False, because, _SPEEDS)
     if one.identifiable:
         return Verdict(one.name, True, f"95 % interval {one.low:.4g} to {one.high:.4g}")
     return Verdict(one.name, False, one.remark, _REMEDIES.get(one.name, _MORE))
@@ -191,12 +192,12 @@ _REMEDIES = {
     "viscous_n_s_per_m": _SPEEDS,
     "viscous_positive_n_s_per_m": _SPEEDS,
     "viscous_negative_n_s_per_m": _SPEEDS,
-    "stiffness_n_per_m": "load the joint slowly to and fro below breakaway, with a position "
+    "stiffness_n_per_m": "load the joint slowly back and forth below breakaway, with a position "
     "sensor that resolves a twentieth of the deflection",
     "damping_n_s_per_m": "strike or shake the joint while it sticks, sampled at ten times its "
     "resonance",
     "offset_n": "let the part slide both ways",
-    "elastic_share": "load the joint slowly to and fro up to breakaway",
+    "elastic_share": "load the joint slowly back and forth up to breakaway",
     "mass_kg": "accelerate harder, or weigh the part and fix the mass (`fixed`, --fix)",
 }
 
@@ -218,7 +219,7 @@ def unexcited(
             out[name] = (value, verdict)
 
     if settings.motion == "imposed" and not mass_shows:
-        hold("mass_kg", 0.0, "inertia is lost in the force of friction")
+        hold("mass_kg", 0.0, "inertia is too small against friction to show")
     if shown.speed_ratio < SPEED_RATIO:
         speeds = (
             f"nearly one speed, 90 % of the sliding rows lie between "
@@ -232,7 +233,7 @@ def unexcited(
         if settings.motion == "imposed":
             hold("damping_n_s_per_m", 0.0, speeds)
     if not shown.both_directions:
-        hold("offset_n", 0.0, "the part slides one way only, so an offset looks like friction")
+        hold("offset_n", 0.0, "the part slides only one way, so an offset looks like friction")
     if shown.presliding_m < PRESLIDING_QUANTA * shown.noise_m and settings.motion == "imposed":
         depth = f"presliding is {shown.presliding_m:.2g} m, the noise {shown.noise_m:.2g} m"
         hold("elastic_share", 0.5, depth)
@@ -249,9 +250,9 @@ def stiction_peak(found: Mapping[str, Estimate], verdict: Sequence[Verdict]) -> 
         return f"stiction peak: not identified ({because})"
     figure = f"F_s / F_c = {ratio.value:.3g}, 95 % interval {ratio.low:.3g} to {ratio.high:.3g}"
     if not judged.identifiable:
-        return f"stiction peak: this log can not tell ({judged.because})"
+        return f"stiction peak: this log cannot tell ({judged.because})"
     if ratio.high < NO_PEAK:
         return f"stiction peak: none; {figure}"
     if ratio.low > 1.0:
         return f"stiction peak: seen; {figure}"
-    return f"stiction peak: this log can not tell; {figure}"
+    return f"stiction peak: this log cannot tell; {figure}"

@@ -37,7 +37,7 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
     Raises
     ------
     LogError
-        A channel is missing, has no unit or no time stamps, or can not be read.
+        A channel is missing, has no unit or no time stamps, or cannot be read.
 
     """
     # Channel refuses what is not finite, by its row.
@@ -95,7 +95,7 @@ def _stated(raw: RawFile) -> list[Pick]:
         if item.channel in picks:
             raise LogError(
                 f"columns '{brief(picks[item.channel].column)}' and '{brief(item.name)}' both give "
-                f"'{item.channel}'; one must: delete or rename the other, or write a mapping"
+                f"'{item.channel}'; only one may: delete or rename the other, or write a mapping"
             )
         picks[item.channel] = Pick(
             item.channel, item.name, item.unit.symbol, item.unit.factor, item.unit.offset
@@ -174,7 +174,7 @@ class _Times:
         if len(names) > 1:
             first, second = map(brief, names[:2])
             raise LogError(
-                f"columns '{first}' and '{second}' both give 't_s'; one must: delete or "
+                f"columns '{first}' and '{second}' both give 't_s'; only one may: delete or "
                 f'rename the other, or write a mapping with time.from = "{first}"'
             )
         return names[0]
@@ -202,7 +202,7 @@ def place(raw: RawFile, name: str) -> str:
 
 
 def column(raw: RawFile, name: str) -> RawChannel:
-    """Return a column, or raise `LogError` with the reason why it can not be read."""
+    """Return a column, or raise `LogError` with the reason why it cannot be read."""
     if name in raw.unreadable:
         raise LogError(f"column '{brief(name)}'{_joint(raw.unreadable[name])}")
     return raw.channels[name]

@@ -44,7 +44,7 @@ class Budget:
         Raises
         ------
         LogError
-            What is said is no number above 0.
+            ``most_bytes`` is not a number above 0.
 
         """
         if most_bytes is None:
@@ -78,9 +78,9 @@ class Budget:
         needed = self.taken_bytes + passing_bytes
         if min(kept_bytes, passing_bytes) < 0.0 or not needed <= self.most_bytes:
             raise LogError(
-                f"{self.file}: with {what} it takes {_size(needed)} of memory, more than the "
-                f"{_size(self.most_bytes)} that it may; it is damaged or too "
-                "large: export the log in parts or with fewer channels, or allow more by "
+                f"{self.file}: with {what} it needs {_size(needed)} of memory, more than the "
+                f"{_size(self.most_bytes)} that it may take; it is damaged or too large: export "
+                "the log in parts or with fewer channels, or allow more by "
                 "memory_bytes= (--memory-gib)"
             )
 

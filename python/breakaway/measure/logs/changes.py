@@ -113,8 +113,8 @@ def _stamps(
         rate = float(rate_hz or 0.0)
         if not (math.isfinite(rate) and 0.0 < rate * (end - start) < MOST_SAMPLES):
             raise LogError(
-                f"rate_hz is {rate_hz!r}; it must be > 0 and give less than {MOST_SAMPLES} samples "
-                f"in {end - start:.6g} s"
+                f"rate_hz is {rate_hz!r}; it must be > 0 and give fewer than {MOST_SAMPLES} "
+                f"samples in {end - start:.6g} s"
             )
         # A sample at the very end is not lost to rounding.
         stamps = start + np.arange(math.floor((end - start) * rate * (1 + 1e-12)) + 1) / rate

@@ -124,7 +124,7 @@ def checked(name: str, values: object) -> Array:
         array = np.array(values, dtype=np.float64, copy=not _is_frozen(values))
     except (TypeError, ValueError):
         raise LogError(
-            f"column '{name}' is no array of numbers; pass one real number per sample"
+            f"column '{name}' is not an array of numbers; pass one real number per sample"
         ) from None
     if array.ndim != 1:
         raise LogError(

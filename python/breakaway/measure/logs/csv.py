@@ -130,8 +130,8 @@ class _Rows:
             self.length += len(line)
             if self.length > LONGEST_ROW:
                 raise LogError(
-                    f"{self.path.name}: a row has more than {LONGEST_ROW:,} characters; at most "
-                    "so many are read: separate the rows by line ends"
+                    f"{self.path.name}: a row has more than {LONGEST_ROW:,} characters, the limit: "
+                    "separate the rows with line breaks"
                 )
             yield line
 
@@ -171,8 +171,8 @@ def _header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], lis
     header = [cell.strip() for cell in top[0]]
     if not header:
         raise LogError(
-            f"{path.name}: the header is an empty line; state as csv.skip_rows in a mapping how "
-            "many lines stand above it"
+            f"{path.name}: the header is an empty line; set csv.skip_rows in a mapping to the "
+            "number of lines above it"
         )
     check_names(path, len(header), max(map(len, header), default=0))
     mark = next((mark for mark in ";\t," if mark in header[0]), None)
@@ -204,7 +204,7 @@ def _blocks(path: Path, rows: _Rows, count: int, at_once: int) -> Iterator[list[
 
 
 class _Column:
-    """The numbers of a column so far, or the reason why it can not be read."""
+    """The numbers of a column so far, or the reason why it cannot be read."""
 
     def __init__(self, decimal: str) -> None:
         self.decimal = decimal

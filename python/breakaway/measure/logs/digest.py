@@ -19,7 +19,7 @@ def digested(path: Path) -> Iterator[str]:
     Raises
     ------
     LogError
-        The file is missing, no regular file, can not be read, or is empty; at the end of the
+        The file is missing, no regular file, cannot be read, or is empty; at the end of the
         block, it is another file, or its size or time of change is another.
 
     """
@@ -31,13 +31,13 @@ def digested(path: Path) -> Iterator[str]:
     except FileNotFoundError:
         raise LogError(f"{path}: there is no such file; check the path") from None
     except (OSError, ValueError) as error:
-        raise LogError(f"{path}: can not be read: {why(error)}") from None
+        raise LogError(f"{path}: cannot be read: {why(error)}") from None
     if not size:
         raise LogError(f"{path.name}: the file is empty; export the log again")
     yield digest
     if not path.exists() or _identity(path.stat()) != before:
         raise LogError(
-            f"{path.name}: has changed while it was read; read it when it is written whole"
+            f"{path.name}: changed while it was read; read it once it is completely written"
         )
 
 

@@ -104,8 +104,8 @@ def _datasets(h5py: Any, raw: RawFile, root: Any, separator: str) -> Iterator[tu
                 seen += 1
                 if seen > MOST_OBJECTS:
                     raise LogError(
-                        f"{raw.path.name}: holds more than {MOST_OBJECTS:,} objects; at most so "
-                        "many are read: export fewer"
+                        f"{raw.path.name}: holds more than {MOST_OBJECTS:,} objects, the limit: "
+                        "export fewer"
                     )
                 if name in MATLAB_PLACES:
                     continue
@@ -232,8 +232,8 @@ def _chunk_bytes(path: Path, name: str, dataset: Any) -> int:  # noqa: ANN401
             inflate.decompress(stored, most + CHECKSUM)
             if not inflate.eof:
                 raise LogError(
-                    f"{path.name}: a chunk of '{name}' holds more or less than the {most} bytes "
-                    "that it claims; it is damaged: export the log again"
+                    f"{path.name}: a chunk of '{name}' does not hold the {most} bytes that it "
+                    "claims; it is damaged: export the log again"
                 )
     largest: int = max((chunk.size for chunk in chunks), default=0)
     return max(most, largest * FILTERS[LZF] if LZF in filters else largest)

@@ -177,7 +177,7 @@ class Log(OneLine):
                 dimension_of(channel.name)
                 found[channel.name] = channel
             if not found:
-                raise LogError("there is no channel beside time; give position_m and force_n")
+                raise LogError("there is no channel besides time; give position_m and force_n")
         object.__setattr__(self, "channels", MappingProxyType(found))
         object.__setattr__(self, "source", source)
         object.__setattr__(self, "sha256", sha256)
@@ -258,7 +258,7 @@ class Log(OneLine):
         Raises
         ------
         LogError
-            There is none of this name; the message names those present and the remedy.
+            There is no channel of this name; the message names those present and the remedy.
 
         """
         check_arguments(Log.channel, locals(), LogError)
@@ -294,7 +294,7 @@ class Log(OneLine):
         Raises
         ------
         LogError
-            There is no such channel, or it is of another dimension.
+            There is no such channel, or it has another dimension.
 
         Examples
         --------
@@ -311,7 +311,7 @@ class Log(OneLine):
                 if dimension_of(new) != dimension_of(old):
                     raise LogError(
                         f"channel '{old}' is a {dimension_of(old)}, and '{new}' is a "
-                        f"{dimension_of(new)}; they must be of one dimension: choose another"
+                        f"{dimension_of(new)}; they must have the same dimension: choose another"
                     )
             found[new] = Channel(new, channel.t_s, channel.values, channel.from_name, channel.unit)
         notes = [f"{new} is the channel '{old}'" for new, old in channels.items()]
@@ -390,7 +390,7 @@ class Log(OneLine):
         return self._with(kept, f"{dropped} samples with repeated stamps left out")
 
     def noted(self, note: str) -> Log:
-        """Return the same log with a line more in its history.
+        """Return the same log with one more line in its history.
 
         Parameters
         ----------

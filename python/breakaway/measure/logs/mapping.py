@@ -106,12 +106,12 @@ def parse_mapping(values: Keys[str, Any], source: str) -> Mapping:
     """Check nested plain values; ``source`` names them in errors."""
     tables = values.get("channels", {})
     if not isinstance(tables, Keys):
-        raise LogError(f"{source}: channels: is no table; give [channels.position_m] and so on")
+        raise LogError(f"{source}: channels: is not a table; give [channels.position_m] and so on")
     channels = {}
     for name, keys in tables.items():
         where = f"{source}: channels.{name}"
         if not isinstance(keys, Keys):
-            raise LogError(f'{where}: is no table; give from = "..." and unit = "..."')
+            raise LogError(f'{where}: is not a table; give from = "..." and unit = "..."')
         channels[name] = _parse(ChannelMapping, keys, where)
         _check_unit(name, channels[name], where)
     rest = {key: value for key, value in values.items() if key != "channels"}

@@ -76,9 +76,9 @@ def _numbers(path: Path, budget: Budget, name: str, message: Message) -> list[tu
         found: list[tuple[str, float]] = []
         _collect(found, "", value)
     except (ValueError, RecursionError) as error:
-        reason = "is too deep" if isinstance(error, RecursionError) else str(error)[:80]
+        reason = "is nested too deeply" if isinstance(error, RecursionError) else str(error)[:80]
         raise LogError(
-            f"{path.name}: topic '{name[:80]}': a message is no JSON that is read ({reason}); "
+            f"{path.name}: topic '{name[:80]}': a message is not readable JSON ({reason}); "
             "export the log again"
         ) from None
     return found

@@ -83,7 +83,7 @@ def _records(stream: BinaryIO, budget: Budget) -> Iterator[tuple[int, memoryview
         if kind == DATA_END:
             (stated,) = struct.unpack("<I", stream.read(length)[:4])
             if stated not in (0, check):
-                raise ValueError("its bytes do not add up to the sum that it states")
+                raise ValueError("its checksum does not match its bytes")
             return
         check = zlib.crc32(head, check)
         if kind in (CHUNK, CHANNEL, MESSAGE):
@@ -108,7 +108,7 @@ def _inner(chunk: memoryview, budget: Budget) -> Iterator[tuple[int, memoryview]
     budget.take("a chunk", 0, 2 * len(chunk) + size)
     data = _unpacked(chunk[place + 8 :], compression, size)
     if len(data) != size or stated not in (0, zlib.crc32(data)):
-        raise ValueError("the bytes of a chunk are not those that it states")
+        raise ValueError("the size or checksum of a chunk does not match its bytes")
     place = 0
     while place < size:
         kind, length = HEAD.unpack_from(data, place)

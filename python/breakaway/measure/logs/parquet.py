@@ -27,7 +27,7 @@ def read_parquet(path: Path, budget: Budget) -> RawFile:
     The unit of a column is taken from its metadata ``unit``, where it has this. Time stamps of
     date and time become seconds after the first.
 
-    Columns that are kept in another file can not be read: no other file is opened.
+    Columns that are kept in another file cannot be read: no other file is opened.
 
     Raises
     ------

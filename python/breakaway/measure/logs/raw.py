@@ -26,7 +26,7 @@ DEFLATE_RATIO = 1032
 """The most that zlib compresses; a file that claims more numbers than this allows is damaged."""
 
 MOST_NAMES = 16_384
-"""Most channels of a file, those that can not be read included; as many as a spreadsheet has."""
+"""Most channels of a file, those that cannot be read included; as many as a spreadsheet has."""
 
 LONGEST_NAME = 1000
 """Most characters of the name of a channel."""
@@ -45,7 +45,7 @@ class RawChannel:
 class RawFile:
     """The channels of a file by their names there.
 
-    ``unreadable`` says why a channel can not be read; this matters only if it is wanted.
+    ``unreadable`` says why a channel cannot be read; this matters only if it is wanted.
     """
 
     path: Path
@@ -75,7 +75,7 @@ class RawFile:
         self.channels[name] = RawChannel(frozen(array), stamps, unit)
 
     def refuse(self, name: str, reason: str) -> None:
-        """Note why a channel can not be read."""
+        """Note why a channel cannot be read."""
         if name in self:
             self.channels.pop(name, None)
             reason = "there are several of this name; rename all but one"
@@ -124,8 +124,7 @@ def check_names(path: Path, count: int, longest: int = 0) -> None:
     """
     if count > MOST_NAMES:
         raise LogError(
-            f"{path.name}: has more than {MOST_NAMES:,} channels; at most so many are read: "
-            "export fewer"
+            f"{path.name}: has more than {MOST_NAMES:,} channels, the limit: export fewer"
         )
     if longest > LONGEST_NAME:
         raise LogError(

@@ -101,7 +101,7 @@ def _check(
     channel: Any,  # noqa: ANN401 - npTDMS has no types
     levels: tuple[Any, ...],
 ) -> None:
-    """Note why a channel can not be read, or ask for its memory."""
+    """Note why a channel cannot be read, or ask for its memory."""
     # Before its type is asked for: npTDMS takes memory for as many scales as are claimed.
     reason = next((why for one in levels if (why := _no_scale(one.properties))), "")
     if not reason and channel.dtype.kind not in "fiub":
@@ -117,10 +117,10 @@ def _check(
 
 
 def _no_scale(properties: Mapping[str, Any]) -> str:
-    """Say why the scales of a channel can not be followed, or nothing."""
+    """Say why the scales of a channel cannot be followed, or nothing."""
     count = properties.get("NI_Number_Of_Scales", 0)
     if not isinstance(count, int | np.integer):
-        return f"states {str(count)[:40]!r} scales; it must be a number: export scaled values"
+        return f"states {str(count)[:40]!r} scales, which is not a number: export scaled values"
     if properties.get("NI_Scaling_Status") == "scaled":
         return ""
     if not 0 <= count <= MOST_SCALES:
@@ -131,7 +131,7 @@ def _no_scale(properties: Mapping[str, Any]) -> str:
             return f"has the scale {found[1][:40]}; at most {MOST_SCALES} are followed"
         if found and str(kind) not in SCALES:
             return (
-                f"is scaled by {str(kind)[:40]!r}, which is not known; its raw values are no "
+                f"is scaled by {str(kind)[:40]!r}, which is unknown, and its raw values are not a "
                 "measurement: export scaled values"
             )
     return ""

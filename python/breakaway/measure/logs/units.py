@@ -102,7 +102,7 @@ def unit_named(symbol: str, channel: str) -> FileUnit:
     Raises
     ------
     LogError
-        No unit has this symbol, or it measures something else than the channel.
+        No unit has this symbol, or it measures something other than the channel.
 
     Examples
     --------
@@ -121,7 +121,7 @@ must be one of N, mN, uN, kN, MN, lbf, kgf
     if found is None:
         raise LogError(
             f"channel '{channel}': the unit '{brief(symbol)}' is unknown; it must be one of "
-            f"{known}; of any other unit, state the SI value of 1 as `scale`"
+            f"{known}; for any other unit, give the SI value of 1 as `scale`"
         )
     if found.dimension != dimension:
         raise LogError(

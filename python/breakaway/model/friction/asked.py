@@ -27,7 +27,7 @@ def check_joint(joint: object) -> None:
     """
     if not isinstance(joint, AnyJoint):
         raise ScenarioError(
-            f"joint: {joint!r} is not a joint; give one of a law, or that of a scenario: "
+            f"joint: {joint!r} is not a joint; give a joint of any law, or that of a scenario: "
             "load_scenario(...).joint"
         )
 
@@ -74,7 +74,7 @@ def columns(
     Raises
     ------
     ScenarioError
-        No joint, a velocity that is not finite, a position outside of the guide, or one beyond the
+        Not a joint, a velocity that is not finite, a position outside the guide, or one beyond the
         seat while ``residual_n`` is left open.
 
     """

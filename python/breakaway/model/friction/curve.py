@@ -63,7 +63,7 @@ def steady_friction(
     velocity_m_per_s : array_like
         v, in m/s, of any sign.
     position_m : array_like, optional
-        x, in m, 0 to l_f. Where it is not the seat, ``joint.residual_n`` must be given.
+        x, in m, 0 to l_f. Beyond the seat, ``joint.residual_n`` must be given.
 
     Returns
     -------
@@ -73,8 +73,8 @@ def steady_friction(
     Raises
     ------
     ScenarioError
-        No joint, a velocity that is not finite, a position outside of the guide, or a residual
-        force that is missing.
+        Not a joint, a velocity that is not finite, a position outside the guide, or a missing
+        residual force.
 
     Examples
     --------
@@ -131,12 +131,12 @@ def stribeck_slope(joint: AnyJoint, velocity_m_per_s: float, *, position_m: floa
     Raises
     ------
     ScenarioError
-        No joint, a velocity that is not finite, or a position outside of the guide.
+        Not a joint, a velocity that is not finite, or a position outside the guide.
 
     Notes
     -----
     Not modeled: the bristle's lag, for which see `breakaway.design.sliding_plant`. The residual
-    friction shifts both levels alike; where it is left open, it is taken as none.
+    friction shifts both levels alike; where it is left open, it is taken as zero.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def steepest_change_velocity(joint: AnyJoint) -> float | None:
     Raises
     ------
     ScenarioError
-        No joint.
+        Not a joint.
 
     Examples
     --------
@@ -211,7 +211,7 @@ def steepest_fall_velocity(joint: AnyJoint) -> float | None:
     Raises
     ------
     ScenarioError
-        No joint.
+        Not a joint.
 
     Examples
     --------
@@ -244,11 +244,11 @@ def breakaway_force(joint: AnyJoint, position_m: ArrayLike) -> Array:
     Raises
     ------
     ScenarioError
-        No joint, or a residual force that is missing.
+        Not a joint, or a missing residual force.
 
     Notes
     -----
-    Not checked: positions beyond the guide, where nothing holds the part any more.
+    Not checked: positions beyond the guide, where nothing holds the part anymore.
 
     Examples
     --------

@@ -45,8 +45,8 @@ def impose_motion(
     Parameters
     ----------
     joint : AnyJoint
-        A joint of any law. Its ``residual_n`` must be given: there is no part to take a weight
-        from.
+        A joint of any law. Its ``residual_n`` must be given: there is no part whose weight could
+        stand in.
     velocity_m_per_s : array_like
         Velocities in m/s, one-dimensional and finite.
     period_s : float

@@ -57,8 +57,8 @@ def friction_over_period(
     """
     if has_elements(joint):
         raise ScenarioError(
-            f"joint.law: {joint.law!r} has several elements, whose force over a period is not "
-            "known; impose the motion instead: impose_motion"
+            f"joint.law: {joint.law!r} has several elements, for which the force over a period "
+            "cannot be computed; use impose_motion instead"
         )
     v = velocity_m_per_s
     friction = steady_friction(joint, v, position_m=np.asarray(position_m)[..., None])

@@ -17,7 +17,7 @@ class IdealActuator(Model):
 
 
 class PushOnlyActuator(Model):
-    """A tip that pushes up to a limit and can not pull."""
+    """A tip that pushes up to a limit and cannot pull."""
 
     kind: Literal["push_only"] = "push_only"
     """The kind of actuator."""
@@ -49,7 +49,7 @@ class ForceActuator(Model):
 
 
 class Contact(Model):
-    """The contact between the tip and the part: a spring and damper that can not pull."""
+    """The contact between the tip and the part: a spring and damper that cannot pull."""
 
     stiffness_n_per_m: Positive
     """Stiffness, in N/m."""
@@ -82,13 +82,13 @@ class Piezo(Model):
     stiffness_n_per_m: Positive
     """Stiffness of stack and preload spring, in N/m."""
     tip_mass_kg: Positive
-    """Mass at the tip that gives the first resonance, in kg."""
+    """Effective mass at the tip, which gives the first resonance, in kg."""
     damping_n_s_per_m: NotNegative
     """Damping of the stack, in N s/m."""
     hysteresis_share: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
     """Share of the stroke that lags; 0 for none."""
     preload_n: NotNegative
-    """Pressure on the relaxed stack, in N: what it can bear in tension before it is stretched."""
+    """Preload of the relaxed stack, in N: the tension that it can bear before it is stretched."""
     capacitance_f: Positive
     """Capacitance at large signals, in F."""
     loss_tangent: NotNegative = 0.0
@@ -102,10 +102,10 @@ class Piezo(Model):
 
 
 class FeedAxis(Model):
-    """A feed axis that moves a tool against the part, maybe through a piezo stack.
+    """A feed axis that moves a tool against the part, with or without a piezo stack.
 
     The drive follows the commanded speed within its acceleration; the axis, the stack and the
-    contact yield. The tip can not pull.
+    contact yield. The tip cannot pull.
 
     Examples
     --------

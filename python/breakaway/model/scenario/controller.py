@@ -67,8 +67,8 @@ class Pid(PidSettings):
 class FmPulses(Model):
     """Pulses whose frequency follows the error (section 4.2 of the paper).
 
-    ``f = f_min + (f_max - f_min) min(|e| / e_full, 1)``. The paper prints the range of
-    frequencies; full scale, width and shape it does not.
+    ``f = f_min + (f_max - f_min) min(|e| / e_full, 1)``. The paper prints the range of frequencies,
+    but not full scale, width or shape.
     """
 
     frequency_min_hz: Positive = 80.0
@@ -82,7 +82,7 @@ class FmPulses(Model):
     base_fraction: Fraction = 0.0
     """Share of the force that is held between pulses."""
     shape: Literal["rectangular", "half_sine", "raised_cosine"] = "half_sine"
-    """Course of the force during a pulse."""
+    """Shape of the force during a pulse."""
 
     @model_validator(mode="after")
     def _pulses_fit(self) -> Self:
@@ -113,8 +113,8 @@ class FmVibration(Model):
 class ForceRamp(Model):
     """The naive way: a force that grows at a constant rate until the part is out.
 
-    A part that breaks loose under it is thrown out by what goes on growing: the baseline that
-    shows why a force alone is not gentle.
+    The force keeps growing after breakaway and throws the part out: the baseline that shows why
+    force alone is not gentle.
     """
 
     kind: Literal["force_ramp"] = "force_ramp"
@@ -131,13 +131,13 @@ class FeedSettings(Model):
     speed_m_per_s: Positive
     """Speed of the feed, in m/s."""
     approach_m_per_s: Positive
-    """Speed of the approach, in m/s: a tool that closes its gap fast strikes."""
+    """Speed of the approach, in m/s: a tool that closes its gap fast strikes the part."""
     approach_s: NotNegative
     """Duration of the approach, in s."""
 
 
 class SteadyFeed(FeedSettings):
-    """The stiff way: an approach, then a constant speed of the feed, without any sensing."""
+    """The stiff way: an approach, then a constant feed speed, without any sensing."""
 
     kind: Literal["steady_feed"] = "steady_feed"
     """The kind of controller."""
@@ -168,19 +168,20 @@ class TimedImpacts(Model):
     travel_m: Positive
     """Travel at which the part is out, in m."""
     target_s: Positive
-    """When it should be out, in s: steps grow, within their limits, to keep it."""
+    """When the part should be out, in s: steps grow, within their limits, to meet this time."""
     force_start_n: Positive = 30.0
     """Force at which the first search begins, in N."""
     search_time_constant_s: Positive = 60e-3
     """Time in which the force grows by e while the joint is searched for, in s."""
     rise_time_constant_s: Positive = 30e-3
-    """Longest time in which it grows by e once something has slipped, in s."""
+    """Longest time in which the force grows by e once the part has slipped, in s."""
     rise_min_s: Positive = 1e-3
     """Shortest such time, in s."""
     rise_per_slip: Positive = 28.0
-    """That time over the mean time of a slip: a part that slips quickly is not pushed for long."""
+    """That time over the mean duration of a slip: a part that slips quickly is not pushed for
+    long."""
     slowing_m_per_s: NotNegative = 0.004
-    """Velocity above which the force grows slower, in m/s."""
+    """Velocity above which the force grows more slowly, in m/s."""
     holding_m_per_s: Positive = 0.01
     """Velocity above which the force does not grow, in m/s."""
     step_min_m: Positive = 30e-6
@@ -192,41 +193,41 @@ class TimedImpacts(Model):
     restart_ratio: Fraction = 0.93
     """Share of the ceiling at which an impact begins."""
     probe_ratio: NotNegative = 0.025
-    """Share by which a fruitless impact raises the ceiling."""
+    """Share by which an impact without a slip raises the ceiling."""
     breakaway_share: Fraction = 0.2
-    """Share by which the ceiling follows the force of a slip that was seen."""
+    """Share by which the ceiling follows the force of an observed slip."""
     dwell_from_ratio: NotNegative = 1.0
-    """Ceiling over the force of the first slip from which a fruitless impact is not raised at once,
-    but dwells longer at its ceiling."""
+    """Ratio of the ceiling to the force of the first slip above which an impact without a slip
+    first dwells longer, before the ceiling rises."""
     dwell_step_s: NotNegative = 2e-4
     """What each such impact adds to the dwell, in s."""
     dwell_max_s: NotNegative = 4e-4
     """Longest dwell, in s; after it, the ceiling rises. 0 for none."""
     dwell_kept_share: Fraction = 0.9
-    """Share of the dwell that stays after a slip that was seen."""
+    """Share of the dwell that remains after an observed slip."""
     rough_slip_m: Positive = 150e-6
-    """Travel of a slip beyond which it is rough, and largest step of a part that is late, in m."""
+    """Travel beyond which a slip is rough, and largest step while the part is late, in m."""
     rough_cut_ratio: Fraction = 0.1
     """Share by which a rough slip lowers the ceiling."""
     patience_s: NotNegative = 0.6
-    """Time by which a rough slip puts target_s off, in s."""
+    """Time by which a rough slip postpones target_s, in s."""
     patience_max_s: NotNegative = 3.2
-    """Most by which target_s is put off, in s."""
+    """Longest time by which target_s is postponed in all, in s."""
     caution_per_s: NotNegative = 1.0 / 6.0
-    """Share of step_max_m that each second takes by which target_s is put off, in 1/s."""
+    """Share of step_max_m that is lost for each second by which target_s is postponed, in 1/s."""
     low_force_ratio: NotNegative = 0.3
-    """Ceiling over the force of the first slip below which the largest step falls with it. 0 for
-    never."""
+    """Ratio of the ceiling to the force of the first slip below which the largest step falls with
+    it. 0 for never."""
     low_step_ratio: Fraction = 0.6
-    """Share of step_max_m to which it falls at most."""
+    """Share of step_max_m below which it does not fall."""
     latest_s: Positive = 9.0
-    """When the part should be out for all that, in s: neither caution nor a low force makes steps
-    smaller than this takes, and steps beyond step_max_m are made if it takes them. Where target_s
-    is later, neither has an effect."""
+    """When the part should be out despite all caution, in s: caution and a low force never make
+    steps smaller than this time requires, and steps exceed step_max_m where it requires them. Where
+    target_s is later, neither has an effect."""
     coast_min_s: NotNegative = 1e-3
     """Shortest coast, in s."""
     settled_m: Positive = 2e-6
-    """Difference of two means over ten samples at which the part is at rest, in m."""
+    """Difference of two means over ten samples below which the part is at rest, in m."""
     lead_start_s: NotNegative = 1e-3
     """Lead at the start, in s."""
     lead_min_s: NotNegative = 1e-4
@@ -234,13 +235,14 @@ class TimedImpacts(Model):
     lead_max_s: NotNegative = 4e-3
     """Largest lead, in s."""
     noise_rms_m: NotNegative = 1e-6
-    """Deviation of the position sensor's noise, as known, in m."""
+    """Standard deviation of the position sensor's noise, as the controller assumes it, in m."""
     noise_margin: NotNegative = 1.0
-    """Deviations of noise that a slope must exceed to count."""
+    """Standard deviations of noise that a slope must exceed to count."""
     free_margin_m: NotNegative = 3e-6
-    """Distance beyond travel_m at which the part is taken as free, in m: noise must not do it."""
+    """Distance beyond travel_m at which the part counts as free, in m; it must exceed the
+    noise."""
     actuator_lag_s: NotNegative = 1.6e-4
-    """Lag of the actuator, as known, in s."""
+    """Lag of the actuator, as the controller assumes it, in s."""
 
     @model_validator(mode="after")
     def _is_in_order(self) -> Self:
@@ -259,9 +261,9 @@ class TimedImpacts(Model):
 class TwoStep(Model):
     """The paper's supervisor: one controller until the joint breaks loose, then one that vibrates.
 
-    What vibrates takes over without a bump: FM vibration goes on from the force of step 1 as its
-    amplitude, timed impacts begin afresh where the part is, with a clock that starts then. There is
-    no way back.
+    The switch is without a bump: FM vibration continues from the force of step 1 as its amplitude;
+    timed impacts begin afresh where the part is, with a clock that starts then. It never switches
+    back.
 
     Examples
     --------
@@ -311,7 +313,7 @@ class StackPulses(Model):
     amplitude_ratio: NotNegative
     """Force of a pulse over the mean of the measured force."""
     stack_force_n: Positive
-    """Force of the full stroke against a part that does not move, as known, in N."""
+    """Force of the full stroke against a part that does not move, as assumed, in N."""
     force_filter_s: Positive = 0.02
     """Time constant of the mean of the force, in s."""
 
@@ -330,7 +332,7 @@ class VibratedFeed(Model):
 
     The pulses break the part loose while the mean force is only ``F_s / (1 + amplitude_ratio)``;
     where that is below the sliding friction, a slip ends with its pulse whatever a soft axis has
-    stored. It is told nothing of the part.
+    stored. It knows nothing about the part.
 
     Examples
     --------

@@ -132,9 +132,9 @@ class Normal(Model):
     std: NotNegative
     """Standard deviation of the distribution before it is truncated."""
     low: float | None = None
-    """Smallest value. Left out: none."""
+    """Smallest value. Left out: no limit."""
     high: float | None = None
-    """Largest value. Left out: none."""
+    """Largest value. Left out: no limit."""
 
     @model_validator(mode="after")
     def _has_values(self) -> Self:
@@ -199,9 +199,9 @@ class LogNormal(Model):
     sigma: NotNegative
     """Standard deviation of the natural logarithm."""
     low: Positive | None = None
-    """Smallest value. Left out: none but 0."""
+    """Smallest value. Left out: 0."""
     high: Positive | None = None
-    """Largest value. Left out: none."""
+    """Largest value. Left out: no limit."""
 
     @model_validator(mode="after")
     def _has_values(self) -> Self:
@@ -264,7 +264,7 @@ class Samples(Model):
     """The values."""
     rows: Literal["independent", "shared"] = "independent"
     """Whether a value is taken on its own, or from the same row of the table as those of the other
-    shared samples, which keeps what they have to do with each other."""
+    shared samples, which keeps their correlation."""
 
     def quantile(self, u: Array) -> Array:
         """Give the value whose place in the table is the share ``u`` of its length.

@@ -1,4 +1,4 @@
-"""What nobody knows of the joint force."""
+"""What is unknown about the joint force."""
 
 from __future__ import annotations
 

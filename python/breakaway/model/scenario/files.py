@@ -219,7 +219,7 @@ def save_scenario(scenario: Scenario, path: str | Path) -> None:
     Raises
     ------
     OutputError
-        The file can not be written.
+        The file cannot be written.
 
     """
     check_arguments(save_scenario, locals(), ScenarioError)

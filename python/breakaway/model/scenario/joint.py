@@ -43,7 +43,7 @@ class _Guide(Model):
     residual_n: Positive | None = None
     """Friction left at the end of the guide, in N. Left out: the weight m g, as in the paper."""
     backward_ratio: Positive | None = None
-    """What all friction levels are multiplied by for backward motion. Left out: 1."""
+    """Factor on all friction levels for backward motion. Left out: 1."""
 
 
 class SeizedJoint(_Guide, _Bristle, _Levels):  # fields come in the reverse order of the bases
@@ -83,7 +83,7 @@ class Lugre(StribeckJoint):
 
 
 class ElastoPlastic(StribeckJoint):
-    """LuGre whose bristle is elastic at first, so that weak vibration moves nothing for good.
+    """LuGre whose bristle is elastic at first, so that weak vibration moves nothing permanently.
 
     ``dz/dt = v - alpha(z, v) k_e |v| / g(v, x) z``: alpha is 0 while the bristle is unloaded or
     carries less than ``elastic_share`` of g, and rises smoothly to 1 at g (Dupont, Hayward,
@@ -107,7 +107,7 @@ class ElastoPlastic(StribeckJoint):
 
 
 class Gms(StribeckJoint):
-    """Generalized Maxwell-slip: springs side by side that let go one after the other.
+    """Generalized Maxwell-slip: springs side by side that let go one after another.
 
     An element sticks, ``dz_i/dt = v``, until it carries its share of g(v, x); then it slips and
     its force follows ``d(k_i z_i)/dt = C (share_i sgn v - k_i z_i / g)`` until the motion turns
@@ -233,7 +233,7 @@ def _check_breaks_loose(joint: TwoRegion | CoulombStiction) -> None:
     if joint.coulomb_n > joint.stiction_n:
         raise ValueError(
             f"coulomb_n: {joint.coulomb_n!r} is not <= stiction_n = {joint.stiction_n!r}; "
-            "this law can not slide at a force that does not break it loose"
+            "this law cannot slide at a force that does not break it loose"
         )
 
 

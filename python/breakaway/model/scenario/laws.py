@@ -33,7 +33,7 @@ else:
 
 
 class LawNumbers(Model):
-    """What some friction laws need beside the quantities of a part."""
+    """What some friction laws need besides the quantities of a part."""
 
     elastic_share: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.7
     """Elasto-plastic: share of the steady deflection that is elastic."""
@@ -137,17 +137,17 @@ def shared_numbers(law: Law, usual: LawNumbers) -> dict[str, float]:
 
 
 def joint_under(law: Law, joint: AnyJoint, numbers: Mapping[str, Any]) -> AnyJoint:
-    """Give a joint with another friction law and the same levels, stiffness, damping and so on.
+    """Give the joint another friction law with the same levels, stiffness, damping and so on.
 
     Parameters
     ----------
     law : str
         The law.
     joint : Lugre, ElastoPlastic, Gms, TwoRegion or CoulombStiction
-        The joint whose numbers it takes, as far as the law has a place for them. A number that
-        the law can not do without, and the joint does not have, is the usual one.
+        The joint whose numbers are taken where the law has a place for them. A number that the law
+        needs and the joint lacks is the usual one.
     numbers : mapping
-        Numbers of the law that count instead.
+        Numbers of the law that replace them.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A way to free a part: actuator, controller, and what they are told of it."""
+"""A way to free a part: actuator, controller, and what they know of it."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class Multiple(Model):
     """
 
     of: Quantity
-    """What is known of a part."""
+    """The quantity that is known of a part."""
     times: Positive
-    """What it is multiplied by, in the unit of the number that is told over that of the quantity: a
-    speed in m/s that is 0.1 times a length in m needs 10 s for it."""
+    """Factor, in the unit of the result over that of the quantity: a speed in m/s that is 0.1 times
+    a length in m covers that length in 10 s."""
 
 
 def _form_of(told: object) -> str:
@@ -71,7 +71,7 @@ class Method(Model):
     reference: Reference | None = None
     """Where the part should be, for controllers that follow one. Left out: 0."""
     knows: dict[str, Known] = Field(default_factory=dict)
-    """Numbers that are told the length of engagement of each part, or a multiple of it, by dotted
+    """Numbers that follow the length of engagement of each part, or a multiple of it, by dotted
     path, such as ``controller.travel_m``; everything else is the same for all parts."""
 
     def told(self, engagement_length_m: Array) -> dict[str, Array]:

@@ -50,7 +50,7 @@ class PartDistributions(Model):
 
 
 class Gentleness(Model):
-    """What a part may suffer at most."""
+    """The most that a part may suffer."""
 
     peak_over_breakaway_max: Positive
     """Largest force over the part's own stiction force at the seat."""
@@ -79,19 +79,19 @@ class PartPopulation(Model):
     parts: PartDistributions
     """How its parts differ."""
     laws: LawNumbers = LawNumbers()
-    """What some friction laws need beside."""
+    """What some friction laws need in addition."""
     disturbance_acts_on: Literal["joint_force", "friction_level"] = "friction_level"
     """What the disturbance multiplies: the friction level alone leaves a stuck part at rest."""
     duration_s: Positive = 10.0
-    """Time that a method has, in s."""
+    """Time allowed for each part, in s."""
     control_period_s: Positive = 5e-5
     """T_s, in s."""
     one_sample_delay: bool = True
     """Whether a command takes effect one period after its sample."""
     sensors: Sensors = Sensors()
-    """What controllers see through."""
+    """Sensors of the controllers."""
     watch: Watch | None = None
-    """What stops a controller whose sensors can not be right."""
+    """Stops a controller whose sensors cannot be right."""
     gentle: Gentleness = Gentleness(
         peak_over_breakaway_max=1.5, jump_max_m=0.5e-3, release_velocity_max_m_per_s=0.3
     )

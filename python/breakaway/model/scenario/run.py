@@ -41,10 +41,10 @@ class Timing(Model):
     one_sample_delay: bool = False
     """Whether a force takes effect one period after the sample it was computed from."""
     integrator: Literal["linearly_implicit_midpoint", "rk4"] = "linearly_implicit_midpoint"
-    """How the plant is stepped; rk4 is the oracle: explicit, it needs shorter steps."""
+    """How the plant is stepped; rk4 is for checks: it is explicit and needs shorter steps."""
     steps_per_period: Annotated[int, Field(ge=1, le=100_000)] = 1
-    """Integration steps in a control period; longer ones than
-    0.3 sqrt(mass / stiffness) s, for rk4 a fifteenth of that, are refused."""
+    """Integration steps in a control period; steps longer than 0.3 sqrt(mass / stiffness) s, or a
+    fifteenth of that for rk4, are refused."""
 
 
 class Trace(Model):
@@ -70,11 +70,11 @@ class Limits(Model):
     """Travel at which the joint counts as loose, in m. Left out: 2 stiction_n /
     stiffness_n_per_m."""
     contact_force_n: NotNegative | None = None
-    """Force above which the actuator counts as pushing, in N: what impacts are told apart by. Left
-    out: 0, or behind a lag a thousandth of the actuator's largest force."""
+    """Force above which the actuator counts as pushing, in N; it separates impacts. Left out: 0, or
+    a thousandth of the actuator's largest force if it has a lag."""
     peak_force_max_n: Positive | None = None
-    """Largest force that the part may see, in N. Left out: any."""
+    """Largest force that the part may see, in N. Left out: no limit."""
     jump_max_m: Positive | None = None
-    """Largest jump, travel above the reference's speed in one slip, in m. Left out: any."""
+    """Largest jump, travel above the reference's speed in one slip, in m. Left out: no limit."""
     release_velocity_max_m_per_s: Positive | None = None
-    """Largest velocity at release, in m/s. Left out: any."""
+    """Largest velocity at release, in m/s. Left out: no limit."""

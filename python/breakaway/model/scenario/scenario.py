@@ -63,7 +63,7 @@ class Scenario(Model):
     description: Text = ""
     """What the scenario is for."""
     breakaway_version: Name | None = None
-    """The version that wrote the file; told, not checked."""
+    """The version that wrote the file; for information, not checked."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """Seed of all random draws."""
     joint: Annotated[AnyJoint, Field(discriminator="law")]
@@ -73,13 +73,13 @@ class Scenario(Model):
     reference: Reference
     """Where the part should be."""
     disturbance: Disturbance = UniformDisturbance()
-    """What is not known of the joint force."""
+    """What is unknown about the joint force."""
     actuator: Actuator = IdealActuator()
     """What pushes."""
     sensors: Sensors | None = None
-    """What the controller sees through. Left out: it sees what is."""
+    """What the controller sees through. Left out: ideal sensors."""
     watch: Watch | None = None
-    """What stops the controller where its sensors can not be right. Left out: nothing."""
+    """Stops the controller when its sensors cannot be right. Left out: nothing does."""
     controller: Controller
     """What decides how hard."""
     timing: Timing
@@ -128,7 +128,7 @@ class Scenario(Model):
         longest_s = float(longest_step_s(m, k_e))
         rule = f"{LONGEST_STEP:g} sqrt(part.mass_kg / joint.stiffness_n_per_m)"
         if timing.integrator == "rk4":
-            longest_s, rule = longest_s / 15, f"{rule} / 15, for rk4 is explicit,"
+            longest_s, rule = longest_s / 15, f"{rule} / 15, because rk4 is explicit,"
             damping = self.joint.damping_n_s_per_m
             if damping * longest_s > m:
                 longest_s, rule = m / damping, "part.mass_kg / joint.damping_n_s_per_m"
@@ -166,7 +166,8 @@ class Scenario(Model):
         if isinstance(self.reference, StepReference) and self.reference.distance_m > bound_m:
             raise ValueError(
                 f"reference.distance_m: a step of {self.reference.distance_m!r} is an error above "
-                f"limits.diverged_error_m = {bound_m!r} at once; give a larger bound, or a motion"
+                f"limits.diverged_error_m = {bound_m!r} at once; give a larger bound, or a "
+                "reference that moves gradually"
             )
         return self
 
@@ -177,7 +178,8 @@ class Scenario(Model):
             if pid.anti_windup == "back_calculation" and pid.tracking_time_s < period * (1 - 1e-9):
                 raise ValueError(
                     f"controller.{path}tracking_time_s: {pid.tracking_time_s!r} is not >= "
-                    f"timing.control_period_s = {period!r}; the back calculation would overshoot"
+                    f"timing.control_period_s = {period!r}; back calculation would overshoot; give "
+                    "a longer one"
                 )
         return self
 
@@ -187,13 +189,13 @@ class Scenario(Model):
         if feeds != isinstance(self.actuator, FeedAxis):
             wanted = "feed_axis" if feeds else "ideal, push_only or force"
             raise ValueError(
-                f"actuator.kind: {self.actuator.kind!r} can not do what controller.kind = "
+                f"actuator.kind: {self.actuator.kind!r} cannot do what controller.kind = "
                 f"{self.controller.kind!r} asks; give {wanted}"
             )
         tip = self.actuator.tip if isinstance(self.actuator, FeedAxis) else None
         if isinstance(self.controller, VibratedFeed) and not isinstance(tip, Piezo):
             raise ValueError(  # noqa: TRY004 - pydantic turns only this into its own error
-                "actuator.tip.kind: 'rigid' can not do what controller.kind = 'vibrated_feed' "
+                "actuator.tip.kind: 'rigid' cannot do what controller.kind = 'vibrated_feed' "
                 "asks; give 'piezo'"
             )
         if self.timing.integrator == "rk4" and isinstance(self.actuator, FeedAxis | ForceActuator):

@@ -13,9 +13,9 @@ class SensorModel(Model):
     """What every sensor has: bandwidth, noise, steps, delay, in this order."""
 
     bandwidth_hz: Positive | None = None
-    """Corner frequency of a first-order low-pass, in Hz. Left out: none."""
+    """Corner frequency of a first-order low-pass, in Hz. Left out: no low-pass."""
     delay_samples: Annotated[int, Field(ge=0, le=8)] = 0
-    """How many control samples it is late."""
+    """By how many control samples the reading is late."""
 
 
 class PositionSensor(SensorModel):
@@ -31,9 +31,9 @@ class PositionSensor(SensorModel):
     """
 
     noise_rms_m: NotNegative = 0.0
-    """Deviation of the noise of a sample, in m."""
+    """Standard deviation of the noise of a sample, in m."""
     quantum_m: Positive | None = None
-    """Step of the reading, in m. Left out: none."""
+    """Step of the reading, in m. Left out: not quantized."""
 
 
 class ForceSensor(SensorModel):
@@ -47,29 +47,29 @@ class ForceSensor(SensorModel):
     """
 
     noise_rms_n: NotNegative = 0.0
-    """Deviation of the noise of a sample, in N."""
+    """Standard deviation of the noise of a sample, in N."""
     quantum_n: Positive | None = None
-    """Step of the reading, in N. Left out: none."""
+    """Step of the reading, in N. Left out: not quantized."""
 
 
 class Sensors(Model):
-    """The sensors of a loop. A velocity sensor, where a PID is told to trust one, is ideal."""
+    """The sensors of a loop. A velocity sensor, if a PID uses one, is ideal."""
 
     position: PositionSensor = PositionSensor()
-    """Of the part's position."""
+    """Sensor of the part's position."""
     force: ForceSensor = ForceSensor()
-    """Of the force on the part."""
+    """Sensor of the force on the part."""
 
 
 class Watch(Model):
-    """Stops the controller for good at a measurement that can not be true.
+    """Stops the controller for good at a measurement that cannot be true.
 
     Then there is no force, no feed, and the stack is relaxed. The reason is the metric
     ``stop_reason``: 1 not a number, 2 the position jumps, 3 it is frozen while the controller
-    pushes, 4 the clock does not go on.
+    pushes, 4 the clock stands still.
     """
 
     jump_max_m: Positive
-    """Most that the part can move in one sample, in m."""
+    """Farthest that the part can move in one sample, in m."""
     frozen_max_s: Positive | None = None
-    """Longest time that a sensor with noise shows the same bits, in s. Left out: any."""
+    """Longest time for which a noisy sensor may show the same bits, in s. Left out: no limit."""

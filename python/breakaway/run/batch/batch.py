@@ -36,9 +36,9 @@ class Batch(OneLine, ByValue):
     varied: Mapping[str, NDArray[np.float64]]
     """The numbers that differ, by dotted path."""
     metrics: Mapping[str, NDArray[np.float64]]
-    """The metrics that were asked for. What did not happen is not a number."""
+    """The metrics that were asked for; NaN for what did not happen."""
     outcome_codes: NDArray[np.uint8] | None
-    """Place of each run's outcome among the outcomes, if it was asked for."""
+    """Index of each run's outcome among the outcomes, if it was asked for."""
 
     def __repr__(self) -> str:
         said = [counted(len(self), "run")]
@@ -87,7 +87,7 @@ class Batch(OneLine, ByValue):
         i : int
             Row of the run.
         trace_every : int, optional
-            Every how many samples the trace keeps a row. Left out: as the scenario says.
+            The trace keeps a row every so many samples. Left out: as the scenario says.
 
         Examples
         --------

@@ -49,8 +49,8 @@ def check_paths(scenario: Scenario, paths: Mapping[str, Any]) -> None:
             raise StudyError(f"{path}: is not a number that can differ from run to run")
         if path.split(".")[0] in ("timing", "trace"):
             raise StudyError(
-                f"{path}: all runs of a batch share it; sweep it in a study, where each value is "
-                "a batch of its own"
+                f"{path}: all runs of a batch share it; sweep it in a study, where each value has "
+                "its own batch"
             )
 
 

@@ -43,9 +43,9 @@ def draw_columns(
 ) -> dict[str, Array]:
     """Draw the values of some numbers for some runs.
 
-    Random values are a function of the seed, the run and the place of the number in ``vary``
-    alone: any runs of a larger batch have the values that they have in it. A run of another
-    design is a point of the whole design, whose size has to be said.
+    Random values depend only on the seed, the run and the place of the number in ``vary``: a run
+    has the same values in a batch of any size. A run of another design is a point of the whole
+    design, whose size must be given.
 
     Parameters
     ----------
@@ -56,8 +56,7 @@ def draw_columns(
     seed : int
         Seed of the draws, 0 to 2^63 - 1.
     design : {"random", "sobol", "latin_hypercube"}, optional
-        How the values are spread. Sobol points are scrambled, as they have to be for means to be
-        without bias.
+        How the values are spread. Sobol points are scrambled, or means would be biased.
     total : int, optional
         Runs of the whole design, which holds ``runs``. Left out: up to the last of them.
 
@@ -69,8 +68,8 @@ def draw_columns(
     Raises
     ------
     StudyError
-        There is no such design, the runs are not among it, an argument is of a wrong kind or out of
-        range, shared samples differ in length, or the values can not fit into the free memory.
+        There is no such design, the runs are not among it, an argument has a wrong type or is out
+        of range, shared samples differ in length, or the values cannot fit into the free memory.
 
     Examples
     --------
@@ -107,7 +106,7 @@ def draw_columns(
 
 
 def check_seed(seed: int) -> None:
-    """Refuse what can not seed the core's draws."""
+    """Refuse what cannot seed the core's draws."""
     check_whole("seed", seed, StudyError, 0, SEED_MAX)
 
 
@@ -161,7 +160,7 @@ def grid_columns(levels: Mapping[str, Sequence[float]]) -> dict[str, Array]:
     Raises
     ------
     StudyError
-        There is something else than lists of numbers, or the combinations can not fit into the free
+        There is something other than lists of numbers, or the combinations cannot fit into the free
         memory.
 
     Examples

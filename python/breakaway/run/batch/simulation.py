@@ -49,25 +49,25 @@ def simulate_many(
 
     Every run has the bits of ``simulate(batch.scenario_of(i), run_index=batch.run_index[i])``, on
     any number of threads. Runs do not wait for the interpreter. A controller that is designed by
-    pole placement is designed for the scenario as it stands, and does not know what the numbers
-    of a part are; what else a scenario leaves open (residual friction, bounds) follows each part.
+    pole placement is designed for the scenario as it stands, and does not know the numbers of a
+    part; what else a scenario leaves open (residual friction, bounds) follows each part.
 
     Parameters
     ----------
     scenario : Scenario
         What the runs have in common. Its trace is not recorded; see `Batch.replay`.
     runs : int or range
-        How many, from number 0 on; or their numbers among the runs of the scenario's seed, such as
-        ``range(100, 200)``.
+        How many, starting at number 0; or their numbers among the runs of the scenario's seed, such
+        as ``range(100, 200)``.
     vary : mapping, optional
-        What differs from run to run beside the draws of the disturbance, by dotted path: a
+        What differs from run to run besides the draws of the disturbance, by dotted path: a
         distribution, or one value for each run.
     design : {"random", "sobol", "latin_hypercube"}, optional
         How distributions are drawn from.
     metrics : sequence of str, optional
         What is wanted of each run: names of `RunMetrics`, and ``outcome``. Left out:
-        everything. What is not wanted takes no time. The metrics of a run that diverged
-        are those until it did.
+        everything. Metrics that are left out take no time. Those of a run that diverged end where
+        it diverged.
     threads : int, optional
         Left out: one for each processor.
     progress : callable, optional
@@ -84,10 +84,10 @@ def simulate_many(
     Raises
     ------
     StudyError
-        What is to vary, a metric or a number of runs is not valid, or the batch can not fit into
+        What is to vary, a metric or a number of runs is not valid, or the batch cannot fit into
         the free memory; nothing has run then.
     ScenarioError
-        It is no scenario, or the controller can not be designed for this joint.
+        It is not a scenario, or the controller cannot be designed for this joint.
     KeyboardInterrupt
         Ctrl-C.
 
@@ -124,12 +124,12 @@ def simulate_many(
 
 
 def check_batch_fits(runs: int, varied: int, metrics: int) -> None:
-    """Refuse a batch that can not fit into the free memory.
+    """Refuse a batch that cannot fit into the free memory.
 
     Raises
     ------
     StudyError
-        It can not.
+        It cannot.
 
     """
     run, number, metric = 16, 24, 16  # bytes, those of copies among them

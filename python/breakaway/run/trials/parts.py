@@ -28,16 +28,16 @@ def draw_parts(population: PartPopulation, runs: int | range, *, seed: int) -> d
     population : PartPopulation
         How parts differ.
     runs : int or range
-        How many, from number 0 on; or the numbers of the parts.
+        How many, starting at number 0; or the numbers of the parts.
     seed : int
         Seed of the draws, 0 to 2^63 - 1.
 
     Raises
     ------
     ScenarioError
-        It is no population.
+        It is not a population.
     StudyError
-        ``runs`` or ``seed`` are out of range, or the parts can not fit into the free memory.
+        ``runs`` or ``seed`` are out of range, or the parts cannot fit into the free memory.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One method on many parts: what became of each of them."""
+"""One method on many parts: what happened to each of them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Trial(OneLine, ByValue):
     parts: Mapping[str, Array]
     """The parts' quantities."""
     metrics: Mapping[str, Array]
-    """What became of them. What did not happen is not a number."""
+    """What happened to them; NaN for what did not happen."""
 
     def __repr__(self) -> str:
         parts = counted(len(self.runs), "part")
@@ -115,7 +115,7 @@ class Trial(OneLine, ByValue):
         i : int
             Row of the part.
         trace_every : int, optional
-            Every how many samples the trace keeps a row.
+            The trace keeps a row every so many samples.
 
         """
         check_arguments(Trial.replay, locals(), StudyError)
@@ -142,8 +142,8 @@ def run_trial(
 ) -> Trial:
     """Try a method on parts of a population.
 
-    Parts go through the step in groups that need the same integration step, longest guides first;
-    the results do not depend on it, nor on threads.
+    Parts are simulated in groups that need the same integration step, longest guides first; the
+    results depend neither on the grouping nor on the threads.
 
     Parameters
     ----------
@@ -154,8 +154,8 @@ def run_trial(
     law : str, optional
         The friction law of their joints.
     runs : int or range
-        How many parts, from number 0 on; or their numbers. The same numbers and seed are the same
-        parts for every method.
+        How many parts, starting at number 0; or their numbers. The same numbers and seed are the
+        same parts for every method.
     seed : int
         Seed of parts, disturbances and noise, 0 to 2^63 - 1.
     threads : int, optional
@@ -167,9 +167,9 @@ def run_trial(
     Raises
     ------
     ScenarioError
-        It is no population, or no method.
+        It is not a population, or not a method.
     StudyError
-        Another argument is of a wrong kind or out of range, or the trial can not fit into the free
+        Another argument has a wrong type or is out of range, or the trial cannot fit into the free
         memory; nothing has run then.
     KeyboardInterrupt
         Ctrl-C.

@@ -392,7 +392,7 @@ def _draw_amplitude(axes: Axes, found: LimitCycleComparison, t: Array, per_s: fl
 
 
 def _draw_frequency(axes: Axes, found: LimitCycleComparison, t: Array, per_s: float) -> None:
-    """Draw frequencies of what is seen: those of a last trace of an oscillation say nothing."""
+    """Draw the frequencies of visible oscillations: those of the last traces say nothing."""
     cycles = found.cycles
     predicted = found.course_amplitude_m_per_s > SEEN * found.speed_m_per_s
     simulated = cycles.amplitude_m_per_s > SEEN * cycles.speed_m_per_s

@@ -155,7 +155,7 @@ def plot_hysteresis(found: Identification) -> Figure:
     if not drawn:
         raise LogError(
             f"{found.log.name}: the part does not reverse within a repeat, so no hysteresis shows; "
-            "record motion to and fro"
+            "record motion back and forth"
         )
     with house_style():
         figure = house_figure(height=3.5)
@@ -210,8 +210,8 @@ def _check_speeds(found: Identification) -> None:
     if shown.speed_ratio < SPEED_RATIO:
         raise LogError(
             f"{found.log.name}: nearly one speed, {1e3 * shown.slow_speed_m_per_s:.3g} to "
-            f"{1e3 * shown.fast_speed_m_per_s:.3g} mm/s, so friction over velocity has no shape to "
-            "see; slide at speeds from creeping to fast"
+            f"{1e3 * shown.fast_speed_m_per_s:.3g} mm/s, so friction over velocity has no visible "
+            "shape; slide at speeds from creeping to fast"
         )
 
 

@@ -407,12 +407,12 @@ def plot_drift(found: Identification) -> Figure:
     Raises
     ------
     LogError
-        There is but one repeat.
+        There is only one repeat.
 
     """
     if len(found.spans) < 2:
         raise LogError(
-            f"{found.log.name}: one repeat was fitted, so no drift of the offset shows; give "
+            f"{found.log.name}: one repeat was fitted, so the offset cannot show a drift; give "
             "`repeats`"
         )
     with house_style():

@@ -45,7 +45,7 @@ def plot_pareto(
     evaluations : sequence of mapping
         One row for each evaluation.
     front : sequence of mapping
-        One row for each evaluation that none is better than, best in the first objective first.
+        One row for each evaluation that no other beats, best in the first objective first.
     less_is_better : mapping
         For each objective, by name, whether less of it is better.
     start : mapping
@@ -73,7 +73,7 @@ def plot_pareto(
         )
         _title(
             figure,
-            f"{title}: {len(front)} of {len(evaluations)} evaluations that none is better than",
+            f"{title}: the front, {len(front)} of {len(evaluations)} evaluations",
         )
     return figure
 
@@ -242,8 +242,8 @@ def plot_slices(
             axes.set_ylabel(unit if unit else "share")
         _title(
             figure,
-            f"{title}: {_label(objective, unit)} over each tuned number, ρ its rank correlation; "
-            "later evaluations are darker, × does not meet a constraint, the ring is recommended",
+            f"{title}: {_label(objective, unit)} over each tuned number, ρ: rank correlation; "
+            "later evaluations are darker, ×: misses a constraint, ring: recommended",
         )
     return figure
 

@@ -98,7 +98,7 @@ def comparison_page(
     table : sequence of mapping
         A row for each law and method.
     result, notes : sequence of str
-        What is found, and what has to be known before it is trusted.
+        What was found, and what to know before trusting it.
     figures : sequence of ShownFigure
         Figures, those of single methods after those of all.
     courses : mapping

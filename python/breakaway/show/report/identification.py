@@ -53,7 +53,7 @@ MOTION_WORDS = {
 
 @dataclass(frozen=True)
 class Shown:
-    """A figure of the page, with its caption and what it says to who can not see it."""
+    """A figure of the page, with its caption and what it says to who cannot see it."""
 
     key: str
     title: str
@@ -101,8 +101,8 @@ def identification_report(
     Returns
     -------
     str
-        A page that needs no other file and no network. A figure that makes no sense for the log
-        is left out, with a sentence why.
+        A page that needs no other file and no network. A figure that makes no sense for the log is
+        left out, with a sentence that says why.
 
     Examples
     --------
@@ -163,7 +163,7 @@ def save_identification_report(
     Raises
     ------
     OutputError
-        The folder can not be made or not be written to, or the disk is full.
+        The folder cannot be made or not be written to, or the disk is full.
 
     """
     page = identification_report(
@@ -220,8 +220,8 @@ def _headline(found: Identification) -> str:
     )
     if found.complete and found.converged:
         return sentence
-    state = "was not done" if found.complete else "was stopped before it was done"
-    return f"{sentence} The fit {state}: this is the best so far."
+    state = "did not converge" if found.complete else "was stopped before it finished"
+    return f"{sentence} The fit {state}: these are the best parameters so far."
 
 
 def _error_unit(prediction: Prediction, error: float) -> tuple[str, float, str]:
@@ -454,8 +454,8 @@ def _fit_plan(found: Identification) -> _Plan:
     return _Plan(
         "fit",
         "Measured and simulated.",
-        "Where the thin line leaves the wide one, the law is wrong or the log disturbed; the "
-        "residual, simulated less measured, shows by how much. Below, the stretch of largest "
+        "Where the thin line leaves the wide one, the law is wrong or the log is disturbed; the "
+        "residual, simulated less measured, shows by how much. Below: the stretch with the largest "
         "change.",
         lambda: plot_fit(found.fit, found.spans),
     )
@@ -466,7 +466,7 @@ def _held_out_plan(held_out: Prediction) -> _Plan:
         "held_out",
         "Rows that were not fitted.",
         "The same parameters on rows that had no part in them: the test that a law with too many "
-        "parameters fails. A simulated position gathers the errors of all rows before it.",
+        "parameters fails. A simulated position accumulates the errors of all rows before it.",
         lambda: plot_fit(held_out),
     )
 
@@ -480,8 +480,8 @@ def _friction_plans(found: Identification) -> list[_Plan]:
             "Dots: the measured force less inertia, offset and spring, without what lies within a "
             "period of the low-pass of the log's ends. Line: friction of steady sliding as "
             f"identified{at}, with its 95 % band, which may be as narrow as the line. Loops of "
-            "dots about the line are friction that lags the velocity; dots that leave it on one "
-            "side are friction that the law does not have.",
+            "dots around the line are friction that lags the velocity; dots that leave it on one "
+            "side are friction that the law lacks.",
             lambda: plot_friction_velocity(found),
         ),
         _Plan(
@@ -501,7 +501,7 @@ def _residual_plan(found: Identification) -> _Plan:
         "Residual.",
         "Left: how it spreads, beside the normal distribution of the same root mean square. "
         "Right: its autocorrelation. A law that holds leaves white noise, within the band; peaks "
-        "at a lag tell of something periodic that the law lacks. The standard errors allow for "
+        "at a lag point to something periodic that the law lacks. The standard errors allow for "
         "correlation up to the dashed line.",
         lambda: plot_residual(found),
     )
@@ -514,8 +514,8 @@ def _posterior_plan(found: Identification, posterior: Posterior | None) -> _Plan
         "posterior",
         "Parameters together.",
         f"Draws from {source}; areas hold 50 % and 95 % of them, lines mark the estimate. Slanted "
-        "areas are parameters that the log tells together better than each by itself. Of more "
-        "than six parameters, those that correlate most are shown.",
+        "areas are parameters that the log determines better in combination than each by itself. "
+        "Of more than six parameters, those that correlate most are shown.",
         lambda: plot_posterior(found, samples),
     )
 
@@ -524,7 +524,7 @@ def _profile_plan(found: Identification, profiles: Sequence[Profile]) -> _Plan:
     return _Plan(
         "profiles",
         "Profile likelihoods.",
-        "The rise of the misfit with one parameter held and all others fitted anew. The interval "
+        "The rise of the misfit with one parameter held and all others fitted again. The interval "
         "is where it stays below the dashed line; a branch that never crosses it leaves that side "
         "open.",
         lambda: plot_profiles(found, profiles),
@@ -535,8 +535,8 @@ def _drift_plan(found: Identification) -> _Plan:
     return _Plan(
         "drift",
         "Offset of each repeat.",
-        "Bars are 95 % intervals. Offsets that differ by more than their bars are a drift of the "
-        "rig, such as that of its temperature or of the zero of its sensor.",
+        "Bars are 95 % intervals. Offsets that differ by more than their bars show a drift of the "
+        "rig, such as that of its temperature or of its sensor's zero.",
         lambda: plot_drift(found),
     )
 
@@ -576,7 +576,7 @@ def _drawn(plans: Sequence[_Plan]) -> tuple[list[Shown], list[str]]:
 
 
 def _alt(plan: _Plan, figure: Figure) -> str:
-    """Say what the axes of a figure show, to those who can not see them."""
+    """Say what the axes of a figure show, to those who cannot see them."""
     labels = ((one.get_ylabel(), one.get_xlabel()) for one in figure.axes)
     shown = (" over ".join(filter(None, pair)) for pair in labels)
     return f"{plan.title} {'; '.join(dict.fromkeys(filter(None, shown)))}".replace("\n", " ")

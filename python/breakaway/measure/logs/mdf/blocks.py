@@ -168,5 +168,5 @@ def open_blocks(name: str, file: BufferedReader) -> Blocks:
         )
     if head[8:10] != b"4.":
         version = head[8:16].decode("ascii", errors="replace").strip("\0 ")
-        raise LogError(f"{name}: is MDF version {version}; only 4 is read: convert it")
+        raise LogError(f"{name}: is MDF version {version}; only version 4 is read: convert it")
     return Blocks(name, file)

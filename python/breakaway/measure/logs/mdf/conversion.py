@@ -113,7 +113,7 @@ class Ranges:
         check_ascending(self.lower)
         check_ascending(self.upper)
         if np.any(self.lower > self.upper) or np.any(self.lower[1:] < self.upper[:-1]):
-            raise ConversionError("the ranges of its table are not apart")
+            raise ConversionError("the ranges of its table overlap")
 
     def __call__(self, raw: Raw) -> npt.NDArray[np.intp]:
         """Return the place of the range of each raw value; as many as there are for none."""
@@ -126,7 +126,7 @@ class Ranges:
         else:
             first = np.searchsorted(self.upper, x)
             within, doubtful = first == last, first < last
-        _refuse(raw, doubtful, "is at the end of a range, and in it or not by how one reads it")
+        _refuse(raw, doubtful, "is at the end of a range, and may count as inside or outside")
         return np.where(within, last, none)
 
 
@@ -139,7 +139,7 @@ class Keys:
     def __post_init__(self) -> None:
         """Check the keys."""
         if len(np.unique(self.keys)) < len(self.keys):
-            raise ConversionError("its table holds a key twice")
+            raise ConversionError("its table holds the same key twice")
 
     def __call__(self, raw: Raw) -> npt.NDArray[np.intp]:
         """Return the place of the key of each raw value; as many as there are for none."""
@@ -186,7 +186,7 @@ class Choice:
                 continue
             found = self.row(int(places[samples[0]]))
             if isinstance(found, str):
-                why = f"its raw value {raw[samples[0]]} stands for {found}, which is no number"
+                why = f"its raw value {raw[samples[0]]} stands for {found}, which is not a number"
                 raise NoNumber(int(samples[0]), why)
             try:
                 values[samples] = found(raw[samples])
@@ -197,7 +197,7 @@ class Choice:
 
 def _numbers(raw: Raw) -> Array:
     x = identity(raw)
-    _refuse(raw, np.isnan(x), "is none")
+    _refuse(raw, np.isnan(x), "is not a number")
     return x
 
 

@@ -108,7 +108,7 @@ def parse(text: str) -> Formula:
     >>> parse("log(X1)")
     Traceback (most recent call last):
         ...
-    breakaway.measure.logs.mdf.formula.FormulaError: 'log' means ln or log10, and is not certain
+    breakaway.measure.logs.mdf.formula.FormulaError: 'log' may mean ln or log10
 
     """
     if len(text) > LONGEST:
@@ -151,7 +151,7 @@ class _Parser:
     def sum(self, depth: int) -> None:
         """Parse terms that are added and subtracted."""
         if depth > DEEPEST:
-            raise FormulaError(f"it has more than {DEEPEST} brackets and signs within each other")
+            raise FormulaError(f"it has more than {DEEPEST} nested brackets and signs")
         self._product(depth)
         while self.next in SUMS:
             operation = SUMS[self._take()]
@@ -170,7 +170,7 @@ class _Parser:
             self._power(depth)
             return
         if depth >= DEEPEST:
-            raise FormulaError(f"it has more than {DEEPEST} brackets and signs within each other")
+            raise FormulaError(f"it has more than {DEEPEST} nested brackets and signs")
         sign = self._take()
         if self.next in SUMS:
             self._signed(depth + 1)
@@ -208,12 +208,12 @@ class _Parser:
         elif token[0].isdigit() or token[0] == ".":
             value = float(token)
             if not np.isfinite(value):
-                raise FormulaError(f"{token[:40]!r} is no finite number")
+                raise FormulaError(f"{token[:40]!r} is not a finite number")
             self._add(value)
         elif token == "log":
-            raise FormulaError("'log' means ln or log10, and is not certain")
+            raise FormulaError("'log' may mean ln or log10")
         else:
-            raise FormulaError(f"{token[:40]!r} is not known, or stands in a wrong place")
+            raise FormulaError(f"{token[:40]!r} is unknown or out of place")
 
     def _call(self, function: np.ufunc, depth: int) -> None:
         self._expect("(")

@@ -59,7 +59,7 @@ def read_mdf(path: Path, budget: Budget) -> RawFile:
     Each has the stamps of the time master of its group. Where several groups have a channel of
     one name, its name is ``group/channel`` with the number of the group, from 0. Conversions
     are applied as the standard states them; a channel with one that gives texts, or that is not
-    understood, can not be read, and its raw values are never given instead. The same holds for
+    understood, cannot be read, and its raw values are never given instead. The same holds for
     a channel with a sample that is marked invalid.
 
     Attachments, events and comments are not looked at, and frames of a bus are not decoded.
@@ -144,10 +144,10 @@ def _stamps(clock: _Series | None, found: list[_Series]) -> tuple[Array | None, 
     """Return the stamps of a group in seconds, and why there are none although it has a master."""
     if clock is None:
         counts = any(series.channel.kind in MASTERS for series in found)
-        return None, "the master channel of its group is no time" if counts else ""
+        return None, "the master channel of its group is not time" if counts else ""
     unit = stated(clock.unit or "s", "t_s")
     if unit is None:
-        return None, f"the time of its group is in {clock.unit[:40]!r}, which is no known unit"
+        return None, f"the time of its group is in {clock.unit[:40]!r}, which is not a known unit"
     if clock.why_not:
-        return None, f"the time of its group can not be read: {clock.why_not}"
+        return None, f"the time of its group cannot be read: {clock.why_not}"
     return unit.factor * clock.values, ""

@@ -96,7 +96,7 @@ def _unsorted(
     """Split the data of several groups, in which the number of the group is before each record."""
     groups = {group.record_id: group for group in data_group.groups}
     if len(groups) < len(data_group.groups):
-        raise blocks.damaged(data_group.data, "belongs to two groups of one number")
+        raise blocks.damaged(data_group.data, "belongs to two groups with the same number")
     pending, begun = bytearray(), 0
     for chunk in data:
         pending += chunk
@@ -128,7 +128,7 @@ def _split(
         found = known.get(data[place : place + width])
         if found is None:
             number = int.from_bytes(data[place : place + width], "little")
-            raise blocks.damaged(data_group.data, f"holds a record of a group {number} that is not")
+            raise blocks.damaged(data_group.data, f"holds a record of an unknown group {number}")
         size, add = found
         if not size:
             told = data[place + width : place + width + 4]
@@ -162,8 +162,8 @@ def _data_blocks(blocks: Blocks, place: int) -> Iterator[Block]:
         return
     if blocks.kind(place) in ("LD", "DV"):
         raise LogError(
-            f"{blocks.name}: keeps its records by columns, as MDF has it since 4.2; that is not "
-            "read: export it by rows, as MDF 4.1"
+            f"{blocks.name}: stores its records by column, as in MDF 4.2; that is not supported: "
+            "export it by row, as MDF 4.1"
         )
     block = blocks.once(place, "DT", "DZ", "DL", "HL") if blocks.kind(place) != "DL" else None
     if block is not None and block.kind != "HL":
@@ -178,17 +178,17 @@ def _unpacked(blocks: Blocks, block: Block, budget: Budget) -> bytes:
     kind, way, columns, size, packed_size = blocks.unpack(block, PACKED)
     begin = block.content + struct.calcsize(PACKED)
     if kind != b"DT" or begin + packed_size > block.end or (way == TRANSPOSED and not columns):
-        raise blocks.damaged(block.place, "is packed, and says so in a way that can not be")
+        raise blocks.damaged(block.place, "is packed, but its packing header is inconsistent")
     if way not in (DEFLATED, TRANSPOSED):
         raise LogError(
-            f"{blocks.name}: is packed in way {way}, which is not read; export it unpacked, or as "
-            "MDF 4.1"
+            f"{blocks.name}: is packed by method {way}, which is not supported; export it "
+            "unpacked, or as MDF 4.1"
         )
     budget.take(f"the packed block at byte {block.place}", 0, 2 * size + packed_size)
     unpacker = zlib.decompressobj()
     data = unpacker.decompress(blocks.read(begin, packed_size), size + 1)
     if len(data) != size:
-        raise blocks.damaged(block.place, f"claims {size} bytes, and holds more or fewer")
+        raise blocks.damaged(block.place, f"claims {size} bytes, but holds more or fewer")
     if way == DEFLATED:
         return data
     matrix = np.frombuffer(data, np.uint8)[: size // columns * columns].reshape(columns, -1)

@@ -137,7 +137,7 @@ def _group(blocks: Blocks, block: Block, number: int) -> Group:
         if channel.kind not in VIRTUAL and last > 8 * data_bytes:
             raise blocks.damaged(block.place, f"has a record of {data_bytes} bytes, too few")
         if channel.flags & SOME_INVALID and channel.invalid_bit >= 8 * invalid_bytes:
-            raise blocks.damaged(block.place, f"has {invalid_bytes} bytes for invalid, too few")
+            raise blocks.damaged(block.place, f"has {invalid_bytes} invalidation bytes, too few")
     return Group(number, record_id, records, data_bytes, invalid_bytes, is_vlsd, tuple(channels))
 
 
