@@ -221,8 +221,8 @@ def measured_cycles(t_s: ArrayLike, velocity_m_per_s: ArrayLike, mean_m_per_s: A
     mean = column_of("mean_m_per_s", mean_m_per_s, ScenarioError)
     if not t.shape == v.shape == mean.shape:
         raise ScenarioError(
-            f"t_s, velocity_m_per_s, mean_m_per_s: have {t.size}, {v.size} and {mean.size} rows, not "
-            "the same number; give three columns of one trace"
+            f"t_s, velocity_m_per_s, mean_m_per_s: have {t.size}, {v.size} and {mean.size} rows, "
+            "not the same number; give three columns of one trace"
         )
     d = v - mean
     up = np.flatnonzero((d[:-1] < 0.0) & (d[1:] >= 0.0))

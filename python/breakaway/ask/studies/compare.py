@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
+from breakaway.ask.studies.base import percent
 from breakaway.ask.studies.levels import Level
 from breakaway.ask.studies.plan import (
     Plan,
