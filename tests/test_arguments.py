@@ -77,6 +77,15 @@ def test_unknown_arguments_are_refused(name):
         FUNCTIONS[name](no_such_argument=1)
 
 
+def test_whole_numbers_of_numpy_are_whole_numbers(scenario):
+    one = bk.simulate(scenario, run_index=np.int64(3))
+    assert type(one.run_index) is int
+    assert one == bk.simulate(scenario, run_index=3)
+    batch = bk.simulate_many(scenario, np.uint32(2), threads=np.int8(1), metrics=["iae_m_s"])
+    assert len(batch) == 2
+    assert batch.replay(np.int64(1)).metrics.iae_m_s == batch["iae_m_s"][1]
+
+
 @pytest.mark.parametrize("run_index", [-1, 2**64, 1.5, "0", None])
 def test_a_run_index_out_of_range_is_refused(scenario, run_index):
     with pytest.raises(bk.ScenarioError, match=rf"^run_index: {run_index!r} is not"):

@@ -161,7 +161,7 @@ def test_pandas_that_is_not_installed(batch, monkeypatch):
             raise ImportError(name)
         return real(name, *rest)
 
-    monkeypatch.setattr("breakaway.run.batch.batch.import_module", missing)
+    monkeypatch.setattr("breakaway.base.extras.import_module", missing)
     with pytest.raises(bk.StudyError, match=r"pip install 'breakaway\[pandas\]'$"):
         batch.to_pandas()
     assert builtins.__import__ is not missing

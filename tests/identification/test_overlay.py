@@ -93,7 +93,8 @@ def test_a_joint_that_can_not_be_is_named_with_its_field(joint: bk.JointFile) ->
 @pytest.mark.parametrize("given", [None, 5, {"coulomb_n": 1.0}, SCENARIO.joint])
 def test_what_is_no_joint_is_refused(given: object) -> None:
     with pytest.raises(
-        bk.ScenarioError, match=r"^joint: .* is not a joint; give a JointFile"
+        bk.ScenarioError,
+        match=r"^joint: .* is not a JointFile or an Identification or a path; give",
     ) as no:
         bk.lay_over(SCENARIO, given)
     assert "\n" not in str(no.value)

@@ -10,7 +10,7 @@ import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
-from numbers import Real
+from numbers import Integral, Real
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, NoReturn, Union, get_args, get_origin, get_type_hints
@@ -27,6 +27,7 @@ Refusal = type[BreakawayError]
 REMEDIES: dict[str, tuple[Refusal, str]] = {
     "Identification": (LogError, "identify returns one"),
     "InertiaFrictionFit": (LogError, "identify_inertia_friction returns one"),
+    "JointFile": (ScenarioError, "give what identify found, or the file that it wrote"),
     "Log": (LogError, "read one from a file with read_log"),
     "Method": (ScenarioError, "load a preset or a file with load_method"),
     "PartPopulation": (ScenarioError, "load a preset or a file with load_population"),
@@ -92,7 +93,11 @@ def _fits(value: object, hint: Any) -> bool:  # noqa: ANN401 - any annotation
     if origin in (Mapping, dict):
         return isinstance(value, Mapping) and all(_fits(key, inner[0]) for key in value)
     if hint in (int, float):
-        return isinstance(value, Real if hint is float else int) and not isinstance(value, bool)
+        return isinstance(value, Real if hint is float else Integral) and not isinstance(
+            value, bool
+        )
+    if hint is bool:
+        return isinstance(value, bool | np.bool_)
     if hint is Path:
         return isinstance(value, PathLike)
     if isinstance(origin, type):  # such as an array of numbers

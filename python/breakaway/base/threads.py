@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from numbers import Integral
 
 from breakaway.errors import StudyError
 
@@ -35,7 +36,7 @@ def thread_count(threads: int | None) -> int:
     """
     if threads is None:
         return usable_processors()
-    whole = isinstance(threads, int) and not isinstance(threads, bool)
+    whole = isinstance(threads, Integral) and not isinstance(threads, bool)
     if not (whole and 1 <= threads <= MOST_THREADS):
         raise StudyError(f"threads: {threads!r} is not a whole number >= 1 and <= {MOST_THREADS}")
-    return threads
+    return int(threads)

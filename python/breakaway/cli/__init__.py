@@ -1,1 +1,4 @@
-"""The ``breakaway`` command: it asks the API and shows the answer; it computes nothing itself."""
+"""The ``breakaway`` command: one file for each of its commands, listed in `app.py`.
+
+In come words and files; out go tables, JSON and exit codes. It asks the API and computes nothing.
+"""

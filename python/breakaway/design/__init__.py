@@ -1,4 +1,7 @@
-"""Controller design: gains by pole placement, and what becomes of the closed loop."""
+"""Controller design: gains by pole placement, and what becomes of the closed loop.
+
+In come joints, gains and timing; out go gains, margins, poles and limit cycles. No runs, no files.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The code that was simulated, as code that runs elsewhere."""
+"""The code that was simulated, as code that runs elsewhere.
+
+In come scenarios; out go folders of C99 and FMUs. No equations: the core records them.
+"""
 
 from __future__ import annotations
 

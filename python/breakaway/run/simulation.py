@@ -55,5 +55,5 @@ def simulate(scenario: Scenario, *, run_index: int = 0) -> Run:
         trace=MappingProxyType(trace),
         scenario=resolved,
         seed=resolved.seed,
-        run_index=run_index,
+        run_index=int(run_index),
     )
