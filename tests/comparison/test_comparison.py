@@ -130,7 +130,7 @@ def test_a_conclusion_of_one_law_is_flagged(done):
         "CAUTION, one law only: follow is gentler than ramp under elasto_plastic, not clearly "
         "under lugre"
     ) in said
-    assert any(s.startswith("CAUTION: which method frees most parts gently hangs") for s in said)
+    assert any(s.startswith("CAUTION: which method frees most parts gently depends") for s in said)
     assert any("clearly frees more parts gently than follow" in s for s in said)
 
 

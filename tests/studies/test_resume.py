@@ -342,7 +342,7 @@ def test_a_folder_of_others_is_refused(robustness, tmp_path):
     (tmp_path / "pieces").mkdir()
     (tmp_path / "pieces" / "mine.parquet").write_text("")
     with pytest.raises(
-        StudyError, match=r"holds pieces/mine.parquet but no manifest\.json; a study begins"
+        StudyError, match=r"holds pieces/mine.parquet but no manifest\.json; a study starts"
     ):
         run_study(robustness, out=tmp_path)
 
