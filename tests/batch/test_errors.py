@@ -248,7 +248,7 @@ def test_numbers_of_parts(runs):
 @pytest.mark.parametrize("metrics", ["iae_m_s", 5, iter(["iae_m_s"]), ["iae_m_s", 3], [None]])
 def test_metrics_that_are_no_list(refusal, metrics):
     message = refusal(metrics=metrics)
-    assert message == f"metrics: {metrics!r} is not a list of names; give a list of names"
+    assert message == f"metrics: {metrics!r} is not a list of names; give one"
 
 
 @pytest.mark.parametrize("metrics", [[], ()])
@@ -322,7 +322,7 @@ def test_threads_that_do_not_start_are_told_and_the_next_batch_runs():
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, True, "all", 1025, 10**20])
 def test_numbers_of_threads(refusal, threads):
-    end = " >= 1 and <= 1024" if type(threads) is int else "; give a whole number"
+    end = " >= 1 and <= 1024" if type(threads) is int else "; give one"
     assert refusal(threads=threads) == f"threads: {threads!r} is not a whole number{end}"
 
 

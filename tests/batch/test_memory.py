@@ -45,4 +45,4 @@ def test_a_batch_beyond_a_limit_of_the_memory_is_an_error():
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert done.returncode == 1  # it was the end of the process
-    assert "StudyError: runs: 100,000,000 take " in done.stderr
+    assert "StudyError: runs: 100,000,000 need " in done.stderr

@@ -16,8 +16,7 @@ from breakaway.ask.durable.journal import DIGESTS, Journal
 from breakaway.ask.durable.manifest import identity_of
 from breakaway.ask.studies import load_study, open_study, run_study
 from breakaway.ask.studies.files import parse_study
-from breakaway.ask.studies.plans import plan_of
-from breakaway.errors import BreakawayError, OutputError, StudyError
+from breakaway.errors import OutputError, StudyError
 
 SCRIPT = """
 import resource, sys
@@ -345,9 +344,3 @@ def test_a_folder_of_others_is_refused(robustness, tmp_path):
         StudyError, match=r"holds pieces/mine.parquet but no manifest\.json; a study starts"
     ):
         run_study(robustness, out=tmp_path)
-
-
-def test_every_error_is_one_of_ours(robustness):
-    assert plan_of(robustness).runs_max >= 300
-    with pytest.raises(BreakawayError, match="is not a study; load one with load_study"):
-        plan_of("sweep")

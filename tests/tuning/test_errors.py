@@ -121,7 +121,7 @@ def test_a_missing_optuna_names_the_extra(feed, tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["evaluations", "threads"])
 @pytest.mark.parametrize("value", [0, -1, 1.5, True])
 def test_counts_are_checked(feed, tmp_path, name, value):
-    with pytest.raises(bk.StudyError, match=rf"{name}: {value} is not a whole number >= 1"):
+    with pytest.raises(bk.StudyError, match=rf"{name}: {value} is not a whole number"):
         bk.tune(feed(), out=tmp_path / "out", **{name: value})
     assert not (tmp_path / "out").exists()
 

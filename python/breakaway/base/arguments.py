@@ -57,7 +57,7 @@ def check_arguments(
     >>> wait(1.0, times="twice")
     Traceback (most recent call last):
         ...
-    breakaway.errors.StudyError: times: 'twice' is not a whole number; give a whole number
+    breakaway.errors.StudyError: times: 'twice' is not a whole number; give one
 
     """
     for name, hint in _hints(function).items():
@@ -126,7 +126,7 @@ def _refuse(name: str, value: object, hint: object, error: Refusal) -> NoReturn:
     kinds = [one for one in _alternatives(hint) if one is not types.NoneType]
     words = " or ".join(dict.fromkeys(_words(one) for one in kinds))
     names = [getattr(one, "__name__", "") for one in kinds]
-    error, remedy = next((REMEDIES[n] for n in names if n in REMEDIES), (error, f"give {words}"))
+    error, remedy = next((REMEDIES[n] for n in names if n in REMEDIES), (error, "give one"))
     end = "" if get_origin(kinds[0]) is Literal else f"; {remedy}"
     raise error(f"{name}: {shown(value)} is not {words}{end}")
 

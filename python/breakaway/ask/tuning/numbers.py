@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Any, get_type_hints
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
@@ -47,10 +47,7 @@ def check_number(method: Method, path: str, values: Mapping[str, float]) -> None
         hint = f"did you mean {near[0]}?" if near else f"its numbers are {', '.join(known)}"
         raise StudyError(f"tune.{path}: is not a number of the method {method.name!r}; {hint}")
     owner, name = _owner(method, path)
-    field = type(owner).model_fields[name]
-    allowed: TypeAdapter[float] = TypeAdapter(
-        Annotated[(field.annotation, field, *field.metadata)]  # type: ignore[arg-type]
-    )
+    allowed = TypeAdapter[float](get_type_hints(type(owner), include_extras=True)[name])
     for key, value in values.items():
         try:
             allowed.validate_python(value)
