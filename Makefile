@@ -8,13 +8,17 @@ FUZZ := $(VENV)/fuzz
 FUZZ_SECONDS ?= 600
 UV := $(BIN)/uv --quiet
 RUST_SOURCES := $(shell find crates -not -path '*/tests/*' \( -name '*.rs' -o -name 'Cargo.toml' \)) Cargo.toml Cargo.lock pyproject.toml
-CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
+# Two workers keep two processors busy: threads of a linear algebra library would wait for each other.
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2
+CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python --features breakaway-core/serde,breakaway-batch/yardstick
 
-.PHONY: help demo test test-firmware lint bench peers fuzz docs lock clean
+.PHONY: help demo test test-build test-firmware check lint bench peers fuzz docs lock clean
 
 help:
 	@echo "make demo    set up, then reproduce the paper into out/reproduction"
 	@echo "make test    set up, then run every test"
+	@echo "make test-build   compile the tests in Rust, and run none"
+	@echo "make check   what takes less than a minute: static checks, and tests that are not slow"
 	@echo "make test-firmware   exported controllers on an emulated Cortex-M4F; says what to install"
 	@echo "make lint    formatting, static checks, layer rules, locks, known faults"
 	@echo "make bench   measure speed and memory, into bench/results.json"
@@ -27,9 +31,17 @@ demo: $(VENV)/.built
 	$(BIN)/breakaway reproduce --out out/reproduction
 
 test: $(VENV)/.built $(VENV)/.development
-	$(CARGO_TEST) --features breakaway-core/serde,breakaway-batch/yardstick
+	$(CARGO_TEST)
 	cargo check --quiet --locked -p breakaway-core --no-default-features
-	$(BIN)/python -m pytest -n 2
+	$(PYTEST)
+
+test-build:
+	$(CARGO_TEST) --no-run
+
+check: $(VENV)/.built $(VENV)/.development
+	$(BIN)/ruff check --quiet .
+	$(BIN)/mypy
+	$(PYTEST) -m "not slow" tests
 
 test-firmware: $(VENV)/.built
 	$(BIN)/python -m tests.firmware

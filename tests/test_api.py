@@ -89,6 +89,7 @@ def test_simulating():
         run.trace["t_s"] = np.zeros(3)
 
 
+@pytest.mark.slow
 def test_dataset(rough):
     run = bk.simulate(rough)
     data = run.to_xarray()
@@ -168,6 +169,7 @@ def test_changing(scenario):
     assert bk.simulate(changed).seed == 7
 
 
+@pytest.mark.slow
 def test_importing_is_quick_and_a_star_gives_every_name():
     """Numbers and tables are loaded with the first name that needs them."""
     code = (
@@ -182,6 +184,7 @@ def test_importing_is_quick_and_a_star_gives_every_name():
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", ["simulate", "resolve", "impose_motion"])
 def test_names_are_functions_whatever_is_used_first(first):
     """Importing a module must not put it in the place of a function."""

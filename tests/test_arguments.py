@@ -373,6 +373,7 @@ TAKERS = {
 }
 
 
+@pytest.mark.slow
 def test_every_function_has_a_valid_call(world):
     assert calls(world).keys() == TAKERS.keys()
 
@@ -419,6 +420,7 @@ def without_variadic(function):
     return [name for name, stars in parameters_of(function).items() if not stars]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:invalid value encountered")  # of emcee, by so few samples
 @pytest.mark.parametrize("name", TAKERS)
 def test_a_wrong_kind_is_refused_in_one_line(name, world, tmp_path, monkeypatch):

@@ -35,6 +35,7 @@ def with_blocks(language: str) -> list[object]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", with_blocks("python"))
 def test_python_runs_and_prints_what_its_comments_say(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -47,6 +48,7 @@ def test_python_runs_and_prints_what_its_comments_say(page, tmp_path, monkeypatc
         assert printed.getvalue().splitlines() == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", with_blocks("console"))
 def test_commands_run(page, tmp_path):
     (tmp_path / "examples").symlink_to(ROOT / "examples")
@@ -85,6 +87,7 @@ def test_links_lead_somewhere():
                 assert (page.parent / target).exists(), f"{page.name} links to {target}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "script", sorted((ROOT / "examples").glob("*/*.py")), ids=lambda script: script.stem
 )

@@ -193,6 +193,7 @@ def test_a_run_is_summarized_without_nan() -> None:
     assert summary["metrics"]["time_to_release_s"] is None
 
 
+@pytest.mark.slow
 def test_a_numbered_run_says_how_it_runs_again(tmp_path: Path) -> None:
     noisy = bk.load_scenario("paper_as_computed").with_(
         {"disturbance.var": 0.05, "timing.duration_s": 0.02}
@@ -206,6 +207,7 @@ def test_a_numbered_run_says_how_it_runs_again(tmp_path: Path) -> None:
     assert first.read_bytes() == second.read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
 @pytest.mark.parametrize("limit", [100, 30_000, 300_000])
 def test_a_disk_that_fills_up_leaves_an_earlier_run_whole(tmp_path: Path, limit: int) -> None:

@@ -34,6 +34,7 @@ def test_at_a_steady_speed_it_ends_at_the_curve(law, speed, sign):
     assert moved.joint_force_n[-1] == pytest.approx(float(expected), rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", JOINTS)
 @settings(max_examples=40, deadline=None)
 @given(speeds=st.lists(st.floats(-0.05, 0.05), min_size=1, max_size=8), to_and_fro=st.booleans())

@@ -52,6 +52,7 @@ def damaged(content: bytes, dice: random.Random) -> bytes:
     return bytes(data)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TARGETS)
 def test_a_target_stands_damage(name: str, tmp_path: Path) -> None:
     dice = random.Random(name)

@@ -13,6 +13,7 @@ GUIDES = sorted((tree.ROOT / "docs/guides").glob("*.md"))
 STEPS = [step for guide in GUIDES for step in steps(guide)]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="the extension has another name there")
 def test_all_guides_are_followed_and_what_they_add_works() -> None:
     """All in one tree and one test, because it is compiled for them together."""

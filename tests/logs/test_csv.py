@@ -151,6 +151,7 @@ def assert_is_a_log(log: Log | None) -> None:
         assert np.all(np.isfinite(log.position_m) & np.isfinite(log.force_n))
 
 
+@pytest.mark.slow
 @given(st.binary(max_size=300))
 @example(b"\0")
 @example(b"\xef\xbb\xbf")
@@ -163,12 +164,14 @@ CELL = st.one_of(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(st.lists(CELL, min_size=2, max_size=4), max_size=14))
 def test_any_table_is_read_or_refused(rows: list[list[str]]) -> None:
     text = "\n".join(["t_s,position_m,force_n", *(",".join(row) for row in rows)])
     assert_is_a_log(read(text.encode()))
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(*[st.floats(-1e9, 1e9)] * 3), min_size=10, max_size=30))
 def test_what_was_written_is_read(rows: list[tuple[float, float, float]]) -> None:
     text = "t_s,position_m,force_n\n"

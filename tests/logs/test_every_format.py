@@ -38,6 +38,7 @@ def test_refuses_a_file_that_was_cut_off(every_file: Path, tmp_path: Path) -> No
         assert_is_a_log(whole[: len(whole) * part // 20], tmp_path / every_file.name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_reads_or_refuses_flipped_bits(
     every_file: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], seed: int

@@ -105,6 +105,7 @@ def test_quantization_survives_a_unit_and_another_rounding() -> None:
     assert quantum(np.array([0.0, 1.0] * 10)) is None
 
 
+@pytest.mark.slow
 @measured
 def test_seals_have_a_gap_and_uneven_steps() -> None:
     for path in sorted((DATA / "seals").glob("*.csv")):

@@ -86,6 +86,7 @@ def test_a_file_that_takes_more_than_it_may_is_refused(tmp_path: Path, name: str
         read_log(path, memory_bytes=2**20)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in SMALL if name != "small.mcap"])
 def test_all_channels_of_a_file_count_together(tmp_path: Path, name: str) -> None:
     path = tmp_path / name
@@ -300,6 +301,7 @@ def test_csv_cells_of_many_digits_are_no_numbers(tmp_path: Path, length: int) ->
         read_log(path)
 
 
+@pytest.mark.slow
 def test_as_many_columns_as_are_allowed_are_read(tmp_path: Path) -> None:
     path = tmp_path / "wide.csv"
     names = ["t_s", "position_m", "force_n", *(f"c{k}" for k in range(MOST_NAMES - 3))]
@@ -308,6 +310,7 @@ def test_as_many_columns_as_are_allowed_are_read(tmp_path: Path) -> None:
     assert (log.rows, len(log.ignored_columns)) == (12, MOST_NAMES - 3)
 
 
+@pytest.mark.slow
 def test_a_name_that_is_missing_among_many_is_told(tmp_path: Path) -> None:
     path = tmp_path / "many.h5"
     with h5py.File(path, "w") as file:
@@ -317,6 +320,7 @@ def test_a_name_that_is_missing_among_many_is_told(tmp_path: Path) -> None:
         read_log(path, {"channels": {"position_m": {"from": "position_x", "unit": "m"}}})
 
 
+@pytest.mark.slow
 def test_parquet_columns_beyond_a_limit_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "wide.parquet"
     pq.write_table(pa.table({f"c{k}": [0.0] for k in range(MOST_NAMES + 1)}), path)

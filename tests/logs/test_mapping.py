@@ -215,6 +215,7 @@ def test_refuses(tmp_path: Path, mapping: dict[str, Any], words: str) -> None:
         read_log(write(tmp_path, "clock,encoder,drive"), mapping)
 
 
+@pytest.mark.slow
 @given(st.sampled_from(["mm", "um", "nm", "cm", "in"]), st.floats(-100.0, 100.0))
 def test_the_unit_of_the_file_does_not_matter(unit: str, offset: float) -> None:
     import tempfile

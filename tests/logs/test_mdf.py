@@ -209,6 +209,7 @@ def test_parts_of_a_structure_are_channels_and_arrays_are_not(tmp_path: Path) ->
 # Records
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("compression", [0, 1, 2])
 def test_records_in_many_slices_packed_or_not(tmp_path: Path, compression: int) -> None:
     rows = 700_000
@@ -381,6 +382,7 @@ def test_memory_is_little_more_than_the_values(tmp_path: Path) -> None:
     assert peak < 1.4 * values + 40e6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("id_bytes", [0, 1])
 def test_memory_for_one_large_packed_block(tmp_path: Path, id_bytes: int) -> None:
     rows, size = 250_000, 80
@@ -401,6 +403,7 @@ def test_memory_for_one_large_packed_block(tmp_path: Path, id_bytes: int) -> Non
     assert peak < asked + 50e6
 
 
+@pytest.mark.slow
 def test_many_channels_are_read_in_time(tmp_path: Path) -> None:
     maker, following = Maker(), 0
     for k in range(16_000):

@@ -19,6 +19,8 @@ from tests.logs.mdf_files import write
 
 import breakaway
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 FORMULAS = {
     "understood.mf4": "X1*10^2",

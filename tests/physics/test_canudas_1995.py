@@ -147,6 +147,7 @@ def breakaway_friction(friction, velocity):
     return friction[:off].max()
 
 
+@pytest.mark.slow
 def test_breakaway_force_falls_with_the_force_rate(joint, plant):
     period_s, found = 1e-4, []
     for rate in RATES_N_PER_S:

@@ -191,6 +191,7 @@ def test_paper_loop_has_its_known_value(resolved):
     assert bk.simulate(resolved).metrics.iae_m_s == pytest.approx(3.0361549e-6, rel=2e-5)
 
 
+@pytest.mark.slow
 def test_oracle_has_its_known_value(resolved):
     oracle = bk.simulate(
         resolved.with_({"timing.integrator": "rk4", "timing.steps_per_period": 100})

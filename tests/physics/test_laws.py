@@ -13,6 +13,8 @@ from scipy.integrate import solve_ivp
 
 import breakaway as bk
 
+pytestmark = pytest.mark.slow
+
 MASS_KG = 1.0
 PERIOD_S = 2e-5
 LEVELS = {

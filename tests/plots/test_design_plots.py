@@ -48,6 +48,7 @@ def test_root_locus_has_a_panel_for_each_loop():
     assert np.min(np.abs(crosses @ [1.0, 1j] - (-0.1428 + 1.734j))) < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kd", [724.2, 2500.0])
 def test_limit_cycle_is_drawn_with_and_without_one(kd):
     gains = {"kind": "given", "kp_n_per_m": 3137.3e3, "ki_n_per_m_s": 1283289e3, "kd_n_s_per_m": kd}
@@ -58,6 +59,7 @@ def test_limit_cycle_is_drawn_with_and_without_one(kd):
     assert len(figure.axes) == 3
 
 
+@pytest.mark.slow
 def test_the_same_figure_gives_the_same_bytes(tmp_path):
     for name in ("a.svg", "b.svg"):
         save_figure(plot_root_locus(LOOPS), tmp_path / name)

@@ -73,6 +73,7 @@ def test_ratios_have_a_row_for_each_log(tmp_path: Path) -> None:
     save_figure(figure, tmp_path / "ratios.svg")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_the_same_log_gives_the_same_file(tmp_path: Path, suffix: str) -> None:
     for name in ("a", "b"):

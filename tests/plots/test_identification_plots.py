@@ -225,6 +225,7 @@ def test_a_part_that_never_turns_has_no_hysteresis(found):
         plot_hysteresis(one_way)
 
 
+@pytest.mark.slow
 def test_the_posterior_shows_six_parameters_with_their_estimates(found):
     draws = found.draws(500)
     figure = plot_posterior(found, draws)
@@ -292,6 +293,7 @@ def test_drift_shows_each_offset_with_its_interval(found, simple):
         plot_drift(simple)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not (DATA / "tribometer").exists(), reason="the measured log is not here")
 def test_a_tribometer_shows_whole_loops_and_no_curve():
     log = read_log(DATA / "tribometer" / "tribometer.csv")

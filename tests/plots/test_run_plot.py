@@ -46,6 +46,7 @@ def test_a_long_trace_keeps_its_peaks_and_stays_small() -> None:
     assert np.all(np.diff(np.asarray(applied.get_xdata())) >= 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("force_n", [400.0, 1e-9])
 def test_a_diverged_run_is_drawn_as_far_as_it_goes(force_n: float, tmp_path: Path) -> None:
     run = bk.simulate(BASE.with_({"limits.diverged_force_n": force_n}))
@@ -70,6 +71,7 @@ def test_a_run_without_a_trace_names_the_remedy() -> None:
         run.plot()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_the_same_run_gives_the_same_file(run: bk.Run, tmp_path: Path, suffix: str) -> None:
     for name in ("a", "b"):
@@ -77,6 +79,7 @@ def test_the_same_run_gives_the_same_file(run: bk.Run, tmp_path: Path, suffix: s
     assert (tmp_path / f"a.{suffix}").read_bytes() == (tmp_path / f"b.{suffix}").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_users_own_style_neither_leaks_in_nor_is_lost(run: bk.Run, tmp_path: Path) -> None:
     save_figure(plot_run(run), tmp_path / "plain.svg")
     with mpl.rc_context({"axes.facecolor": "black", "font.size": 30.0, "lines.linewidth": 9.0}):

@@ -125,6 +125,7 @@ class Page(HTMLParser):
         self.tags.append((tag, dict(attrs)))
 
 
+@pytest.mark.slow
 def test_the_page_needs_nothing_else(page):
     parsed = Page(page)
     names = ("href", "src", "xlink:href")
@@ -237,6 +238,7 @@ setTimeout(() => {
 """
 
 
+@pytest.mark.slow
 @browser
 def test_the_animation_moves_and_pauses(page, tmp_path):
     dom, console = browse(page, tmp_path, MOVES)
@@ -283,6 +285,7 @@ document.body.dataset.said = JSON.stringify(found);
 """
 
 
+@pytest.mark.slow
 @browser
 def test_keys_slider_and_choice_work(page, tmp_path):
     dom, console = browse(page, tmp_path, KEYS)
@@ -319,6 +322,7 @@ setTimeout(() => {
 """
 
 
+@pytest.mark.slow
 @browser
 def test_reduced_motion_is_respected(page, tmp_path):
     dom, console = browse(page, tmp_path, STEPS, "--force-prefers-reduced-motion")

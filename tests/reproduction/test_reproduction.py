@@ -30,6 +30,7 @@ def out(tmp_path_factory, simulated):
     return folder
 
 
+@pytest.mark.slow
 def test_it_tells_what_it_is_at(simulated):
     _, told = simulated
     assert len(told) > 3
@@ -40,6 +41,7 @@ def values(out):
     return json.loads((out / "reproduction.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_all_18_gains_agree(values):
     keys = [
         f"table2.{control}.{kind}.{gain}"
@@ -160,6 +162,7 @@ def test_the_page_needs_nothing_else(out):
     assert "<script" not in text
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="chromium is not on the path")
 def test_the_page_shows_in_a_browser(out, tmp_path):
     options = [

@@ -165,7 +165,9 @@ SITES = {site.label: site for site in walk()}
 
 def pytest_generate_tests(metafunc):
     if "site" in metafunc.fixturenames:
-        metafunc.parametrize("site", SITES.values(), ids=SITES.keys())
+        marker = metafunc.definition.get_closest_marker("sites")
+        chosen = {k: s for k, s in SITES.items() if marker is None or marker.args[0](s)}
+        metafunc.parametrize("site", chosen.values(), ids=chosen.keys())
     if "table" in metafunc.fixturenames:  # one site for every model at every place
         tables = {(site.path[:-1], site.model): site for site in SITES.values()}
         ids = [site.label.rpartition(".")[0] or "scenario" for site in tables.values()]

@@ -156,6 +156,7 @@ def test_examples_are_valid_and_run(table):
     assert run.trace["t_s"].size > 1
 
 
+@pytest.mark.slow
 def test_nasty_values(site):
     for value in NASTY:
         try_value(site, value)
@@ -172,6 +173,7 @@ VALUES = (
 )
 
 
+@pytest.mark.slow
 def test_arbitrary_values(sites):
     @settings(max_examples=300)
     @given(site=st.sampled_from(sites), value=VALUES)
@@ -181,6 +183,7 @@ def test_arbitrary_values(sites):
     run()
 
 
+@pytest.mark.slow
 def test_a_missing_field_is_named_or_has_a_default(site):
     values = site.without()
     if not site.field.is_required() and site.name not in ("law", "kind"):
@@ -209,9 +212,9 @@ def test_an_unknown_key_is_refused_at_every_level(table):
         assert name in str(caught.value)
 
 
+@pytest.mark.slow
+@pytest.mark.sites(lambda site: len(site.name) >= 4)  # a shorter name is near nothing
 def test_a_misspelled_key_is_refused_with_the_nearest_name(site):
-    if len(site.name) < 4:
-        return  # too short to be near anything
     typo = site.name[:2] + site.name[3:]  # a letter is missing
     with pytest.raises(bk.ScenarioError) as caught:
         bk.Scenario.parse(site.with_key(typo, 1.0))
@@ -220,9 +223,8 @@ def test_a_misspelled_key_is_refused_with_the_nearest_name(site):
     assert str(caught.value).startswith(expected)
 
 
+@pytest.mark.sites(lambda site: site.name in ("law", "kind") and "[" in site.label)
 def test_a_wrong_kind_is_refused_with_the_nearest(site):
-    if site.name not in ("law", "kind") or "[" not in site.label:
-        return
     right = site.field.default
     with pytest.raises(bk.ScenarioError) as caught:
         bk.Scenario.parse(site.with_value(right + "x"))
@@ -231,6 +233,7 @@ def test_a_wrong_kind_is_refused_with_the_nearest(site):
     assert message.endswith(f"; did you mean {right!r}?"), message
 
 
+@pytest.mark.slow
 def test_models_alone_refuse_the_same(site):
     """A model that is built on its own names its own fields."""
     values = dict(site.base())

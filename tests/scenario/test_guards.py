@@ -197,6 +197,7 @@ def test_stacks_have_the_figures_that_they_say(name):
     assert 10 / 27 * share / (1 - 5 / 27 * share) == pytest.approx(0.15, rel=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("unknown", "more"), [(3, 0), (40_000, 39_995)])
 def test_a_file_of_another_kind_is_refused_in_a_few_lines(tmp_path, unknown, more):
     path = tmp_path / "other.toml"

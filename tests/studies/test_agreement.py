@@ -238,6 +238,7 @@ def test_what_is_interrupted_goes_on_to_the_same_bytes(tmp_path, short):
     assert open_study(whole).study == study
 
 
+@pytest.mark.slow
 def test_the_command_shows_it(tmp_path, short):
     from typer.testing import CliRunner
 

@@ -6,6 +6,8 @@ import pytest
 from breakaway.drawing.style import save_figure
 from breakaway.show.plots.study import plot_compare, plot_robustness, plot_sensitivity, plot_sweep
 
+pytestmark = pytest.mark.slow
+
 
 def point(labels, shift=0.0):
     row = dict(labels)

@@ -51,6 +51,7 @@ def test_a_known_failure_probability_is_recovered(tmp_path, pushed, largest_stic
     assert row["peak_force_n_median"] == np.median(done.scan(["peak_force_n"])["peak_force_n"])
 
 
+@pytest.mark.slow
 def test_the_interval_covers_a_known_probability_as_often_as_it_says(pushed, largest_stiction_n):
     """400 studies of 50 parts each: at least 95 % of their intervals hold the truth."""
     law = bk.Normal(mean=550.0, std=40.0)
@@ -62,6 +63,7 @@ def test_the_interval_covers_a_known_probability_as_often_as_it_says(pushed, lar
     assert covered >= 0.93  # 0.95 and more; three standard errors are 0.03
 
 
+@pytest.mark.slow
 def test_a_grid_has_every_combination_and_the_same_draws(tmp_path, quick):
     grid = {"joint.stiction_n": [400.0, 500.0], "disturbance.law": ["uniform", "gaussian"]}
     study = study_of("sweep", quick, runs=5, runs_per_piece=7, sweep={"grid": grid})
@@ -159,6 +161,7 @@ def conducted(study):
     return RobustnessPlan(study).conduct(lambda points, _: [InMemory(point) for point in points])
 
 
+@pytest.mark.slow
 def test_the_level_that_is_claimed_is_right_as_often_as_it_says(pushed, largest_stiction_n):
     """550 N +- 10 N times the scale fails above the limit: the largest scale is known."""
     known = (largest_stiction_n - 550.0) / (0.8 * 10.0)  # where a tenth of the width is above

@@ -101,6 +101,7 @@ def without_digest(folder: Path, _: Path) -> None:
 FOREIGN = [from_another, with_its_digest, edited, swapped, without_digest]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("put", FOREIGN)
 def test_a_foreign_piece_is_computed_again_with_a_word(asked, whole, other, put):
     before, right = contents(whole), median(whole)

@@ -104,6 +104,7 @@ def study_file(whole, tmp_path):
     return shutil.copy(whole / "study.toml", tmp_path / "study.toml")
 
 
+@pytest.mark.slow
 def test_the_folder_says_all(whole, robustness):
     manifest = json.loads((whole / "manifest.json").read_text())
     assert manifest["seed"] == 0
@@ -119,6 +120,7 @@ def test_the_folder_says_all(whole, robustness):
     }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_kill_9_at_random_moments_loses_no_finished_piece(study_file, whole, tmp_path):
     folder, moments = tmp_path / "killed", random.Random(5)
@@ -287,6 +289,7 @@ def test_one_process_at_a_time(robustness, whole, tmp_path):
     assert_same(folder, whole)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
 @pytest.mark.parametrize("full_at", [1, 205])
 def test_a_full_disk_keeps_what_is_finished(study_file, whole, tmp_path, full_at):

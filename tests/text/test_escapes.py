@@ -27,6 +27,7 @@ TEXTS = st.one_of(st.text(max_size=40), st.lists(st.sampled_from(MARKS)).map("".
 READABLE = "Größe 20 µm, 摩擦 (seat) no. 1: paper_as_computed"
 
 
+@pytest.mark.slow
 @given(TEXTS)
 def test_what_is_visible_is_one_line_without_hidden_characters(given: str) -> None:
     shown = text.visible(given)

@@ -30,6 +30,8 @@ from breakaway.drawing.style import save_figure
 from breakaway.model.scenario.model import Model, Name
 from breakaway.show.plots.design import plot_bode
 
+pytestmark = pytest.mark.slow
+
 CODE = '*/ int marker; /* ??/ "; marker \\'
 MARKUP = "=1+1 <marker a='b'> ]]>$\\marker{ $${m}[bold]m[/] | m | `m` *m* &amp; µ"
 NAMES = {"code": CODE, "markup": MARKUP}

@@ -25,6 +25,7 @@ def population() -> bk.PartPopulation:
     return whole.model_copy(update={"parts": parts, "duration_s": 0.6})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", preset_names("methods"))
 def test_every_method_runs_under_every_law_and_replays_to_the_bit(population, name, law):

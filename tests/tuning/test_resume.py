@@ -79,6 +79,7 @@ def test_another_sampler_seed_tries_others(asked, whole, tmp_path):
     assert other.evaluations[1] != ours[1]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_kill_9_loses_no_finished_trial(asked, whole, tmp_path):
     import tomli_w
@@ -106,6 +107,7 @@ def test_kill_9_loses_no_finished_trial(asked, whole, tmp_path):
     assert contents(folder) == contents(whole)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("after", [0, 5, 24, 26])
 def test_ctrl_c_keeps_finished_trials(asked, whole, tmp_path, after):
     """Among the evaluations, and among those that are scored on unseen parts."""
@@ -159,6 +161,7 @@ def test_a_finished_tuning_computes_nothing(asked, whole, tmp_path, monkeypatch)
     assert contents(folder) == contents(whole)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "damage",
     [
@@ -188,6 +191,7 @@ def foreign(asked, tmp_path):
     return (folder / "pieces" / "evaluations.jsonl").read_bytes().splitlines(keepends=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", [0, 1])
 def test_a_foreign_trial_is_tried_again_and_not_read(asked, whole, tmp_path, line):
     folder = shutil.copytree(whole, tmp_path / "mixed")

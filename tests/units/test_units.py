@@ -141,6 +141,7 @@ def test_every_metric_is_looked_at() -> None:
     assert list(metric_texts()) == list(RunMetrics.__dataclass_fields__)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["plain", "axis_stack_sensed"])
 def test_columns_of_a_trace(name: str) -> None:
     run = bk.simulate(PLANTS[name].with_({"trace.every_samples": 1}))
