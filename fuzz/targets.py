@@ -167,7 +167,7 @@ def watched(scratch: Path) -> Iterator[list[str]]:
 
 
 class _Watch:
-    """An audit hook; one for the process, since hooks can not be taken out."""
+    """An audit hook; one for the process, since hooks cannot be taken out."""
 
     hooked = False
     scratch: str | None = None

@@ -1,6 +1,6 @@
 """Check the locked packages against databases of known faults.
 
-Exits with 1 where a package has a known fault. What can not be checked, because a tool or its
+Exits with 1 where a package has a known fault. What cannot be checked, because a tool or its
 database is not to be had, is said aloud and does not fail: a check that was left out is no pass.
 """
 

@@ -2,11 +2,11 @@
 
 Settings: no Python in the loop. The plant is a `SymbolicVectorSystem`, the PID a discrete
 `LinearSystem` whose state is (I, F, n), the reference a polynomial `TrajectorySource`, the factor a
-zero-order-hold one that switches half a period early, so that rounding can not hide a switch from
+zero-order-hold one that switches half a period early, so that rounding cannot hide a switch from
 the sample it is for. The position at the samples is logged, and the IAE summed from the log.
 `runge_kutta2` at one step a period is the cheapest integrator within the tolerance. Tried, and
 slower: runge_kutta3, runge_kutta5, and by far radau3 and implicit_euler; plant and PID as Python
-systems. (Reference and |e| can not be `SymbolicVectorSystem`s too: one without continuous state
+systems. (Reference and |e| cannot be `SymbolicVectorSystem`s too: one without continuous state
 refuses to be in a diagram that has some.) Past the end of the guide R is 0, but z is left.
 
 Run after run; on all cores, a process for each core.

@@ -44,7 +44,7 @@ def table(reports: list[BreakawayReport]) -> None:
 
 
 def population(reports: list[BreakawayReport]) -> None:
-    """Print how breakaway differs from run to run, or why that can not be told."""
+    """Print how breakaway differs from run to run, or why that cannot be told."""
     try:
         found = fit_population(reports)
     except LogError as error:

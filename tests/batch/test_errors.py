@@ -315,7 +315,7 @@ def test_threads_that_do_not_start_are_told_and_the_next_batch_runs():
         [sys.executable, "-c", THREADS_BEYOND_MEMORY], capture_output=True, text=True, check=False
     )
     said, after = done.stdout.splitlines()
-    assert said.startswith("threads: 1000 can not be started (")
+    assert said.startswith("threads: 1000 cannot be started (")
     assert said.endswith("); give a smaller number")
     assert (after, done.stderr, done.returncode) == ("4", "", 0)
 

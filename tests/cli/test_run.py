@@ -114,9 +114,9 @@ def test_joint_tells_where_each_value_came_from(call: Call, joint_toml: Path) ->
     assert "breakaway from rest" in content["from_scenario"]["joint.stiction_n"]["reason"]
     assert {"rig.offset_n", "asymmetric.coulomb_positive_n"} <= set(content["not_used"])
     assert math.isclose(content["weight_as_residual_n"], 3.0 * 9.81, rel_tol=1e-3)
-    assert content["notes"] == ["gains: designed anew for the identified joint"]
+    assert content["notes"] == ["gains: redesigned for the identified joint"]
     shown = call("run", "paper_as_computed", "--joint", joint_toml).stdout
-    for words in ("motor.csv", "not used", "belongs to the rig", "designed anew"):
+    for words in ("motor.csv", "not used", "belongs to the rig", "redesigned"):
         assert words in shown
 
 

@@ -150,7 +150,7 @@ fn centered(bits: u64) -> f64 {
     bits as f64 * 2.0_f64.powi(-52) - 1.0
 }
 
-/// On (0, 1); its ends can not be drawn.
+/// On (0, 1); its ends cannot be drawn.
 fn open(bits: u64) -> f64 {
     (bits >> 1) as f64 * 2.0_f64.powi(-52) + 2.0_f64.powi(-53)
 }

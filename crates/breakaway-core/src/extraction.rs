@@ -93,7 +93,7 @@ pub struct Extraction<R> {
     pub actuator: Actuator<R>,
     /// What the controller sees through, if not what is.
     pub sensors: Option<Sensors<R>>,
-    /// What stops the controller where its sensors can not be right, if anything does.
+    /// What stops the controller where its sensors cannot be right, if anything does.
     pub watch: Option<Watch<R>>,
     /// What decides how hard.
     pub controller: Controller<R>,

@@ -79,7 +79,7 @@ pub enum Integrator {
 ///
 /// ```text
 /// F = F_0                          rigid: whatever the part does
-/// F = max(0, F_0 − S v_m)          through something compliant in a contact that can not pull
+/// F = max(0, F_0 − S v_m)          through something compliant in a contact that cannot pull
 /// ```
 ///
 /// v_m is the part's velocity at the middle of the step, F_0 the force there if the part stood

@@ -72,7 +72,7 @@ impl Bench {
         Self { actuator, state, joint, mass_kg: 1.0, part }
     }
 
-    /// The part can not move: gives the force on it, and the effort.
+    /// The part cannot move: gives the force on it, and the effort.
     fn hold(&mut self, command: &Command<f64>, h: f64) -> (f64, Effort<f64>) {
         let driven = self.actuator.drive(&mut self.state, command, self.part.position_m, h);
         let push = match driven.push.yielding_n_s_per_m.get() {

@@ -162,7 +162,7 @@ fn every_command_is_within_the_actuators_range() {
     }
 }
 
-/// Without a watch, too, and for good: what can not be pushed with is not commanded.
+/// Without a watch, too, and for good: what cannot be pushed with is not commanded.
 #[test]
 fn no_number_that_is_none_leads_out_of_the_range() {
     const WRONG: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300];

@@ -1,5 +1,5 @@
 //! A push through something compliant: it yields to the part's motion within the step, and a contact
-//! can not pull.
+//! cannot pull.
 
 mod laws;
 mod support;

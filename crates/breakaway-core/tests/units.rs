@@ -1,6 +1,6 @@
 //! An equation does not know its units. Measured in other units of mass, length and time, the same
 //! extraction must run the same; a term with a missing factor (equation (2) as printed lacks k_e)
-//! can not pass. With powers of two for the units even the bits agree.
+//! cannot pass. With powers of two for the units even the bits agree.
 
 use breakaway_core::disturbance::DisturbedQuantity;
 use breakaway_core::metrics::Groups;

@@ -13,12 +13,12 @@ import_exception!(breakaway.errors, StudyError);
 /// mismatch between the two and not a user's mistake.
 pub(crate) fn unreadable(error: PythonizeError) -> PyErr {
     refused(format!(
-        "the core can not read this configuration: {error}; give the scenario model and the Rust \
+        "the core cannot read this configuration: {error}; give the scenario model and the Rust \
          struct the same names, or compile the extension again: make .venv/.built"
     ))
 }
 
-/// What the core can not take. The Python above rules this out, so it is no user's mistake.
+/// What the core cannot take. The Python above rules this out, so it is no user's mistake.
 pub(crate) fn refused(what: impl Into<String>) -> PyErr {
     BreakawayError::new_err(what.into())
 }
@@ -26,7 +26,7 @@ pub(crate) fn refused(what: impl Into<String>) -> PyErr {
 /// The system starts fewer threads than were asked for.
 pub(crate) fn no_thread(threads: usize, error: io::Error) -> PyErr {
     StudyError::new_err(format!(
-        "threads: {threads} can not be started ({error}); give a smaller number"
+        "threads: {threads} cannot be started ({error}); give a smaller number"
     ))
 }
 

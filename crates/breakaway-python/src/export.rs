@@ -121,7 +121,7 @@ pub(crate) fn export_reference<'py>(
 
 fn what_of(name: &str) -> PyResult<What> {
     let found = What::ALL.into_iter().find(|what| what.prefix() == name);
-    found.ok_or_else(|| refused(format!("{name} can not be exported")))
+    found.ok_or_else(|| refused(format!("{name} cannot be exported")))
 }
 
 fn precision_of(name: &str) -> PyResult<Precision> {

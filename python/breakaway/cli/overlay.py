@@ -73,7 +73,7 @@ class Overlay:
             for gains in gain_sets(self.scenario.controller).values()
         }
         texts = {
-            "designed": "designed anew for the identified joint",
+            "designed": "redesigned for the identified joint",
             "given": "kept as the scenario gives them: not designed for the identified joint",
         }
         if len(kinds) == 1:

@@ -1,4 +1,4 @@
-//! A feed axis with a tool, maybe a piezo stack, and a contact that can not pull.
+//! A feed axis with a tool, maybe a piezo stack, and a contact that cannot pull.
 
 use super::piezo::Charged;
 use super::{ActuatorState, Command, Driven, Effort, Piezo};

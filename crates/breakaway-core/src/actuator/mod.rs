@@ -165,7 +165,7 @@ impl<R: Real> Effort<R> {
 pub enum Actuator<R> {
     /// Delivers every commanded force, pushing or pulling.
     Ideal,
-    /// A tip that can push up to a limit and can not pull.
+    /// A tip that can push up to a limit and cannot pull.
     PushOnly(PushOnly<R>),
     /// Push-only, behind a lag and a limit of its rate.
     Force(ForceActuator<R>),

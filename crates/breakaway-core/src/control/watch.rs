@@ -1,4 +1,4 @@
-//! A watch over the sensor: what can not be true stops the extraction.
+//! A watch over the sensor: what cannot be true stops the extraction.
 
 use super::Measurement;
 use crate::parameters::parameters;
@@ -6,7 +6,7 @@ use crate::real::Real;
 use crate::states::states;
 
 parameters! {
-    /// Stops for good at a measurement that can not be true: no force, no feed, stack relaxed.
+    /// Stops for good at a measurement that cannot be true: no force, no feed, stack relaxed.
     ///
     /// ```text
     /// 1  not a number     position, velocity, force or reference is none, or infinite
@@ -50,7 +50,7 @@ impl<R: Real> Watch<R> {
         measured: &Measurement<R>,
         pushing: R::Mask,
     ) -> R::Mask {
-        R::section("watch: stops for good at a measurement that can not be true");
+        R::section("watch: stops for good at a measurement that cannot be true");
         let (zero, x) = (R::zero(), measured.position_m);
         let finite = R::constant(f64::INFINITY);
         let numbers = x.abs().lt(finite)
