@@ -329,6 +329,7 @@ def assert_same_batch(bits):
     return check
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_all_numbers_at_once(name, assert_same_bits, assert_same_batch):
     """More runs than any instructions have lanes, and no whole number of lanes."""
@@ -368,6 +369,7 @@ ALONE = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ALONE)
 def test_each_number_on_its_own(kind, assert_same_bits):
     """A number in the place of another would be seen."""
@@ -445,6 +447,7 @@ def test_numbers_are_found_in_every_room():
     } <= paths
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", bk.preset_names())
 @pytest.mark.parametrize("var", [0.0, 0.125])
 def test_presets(name, var, assert_same_bits, assert_same_batch):

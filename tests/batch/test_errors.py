@@ -309,6 +309,7 @@ print(len(bk.simulate_many(scenario, 4, threads=2)))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks the kernel for few threads")
 def test_threads_that_do_not_start_are_told_and_the_next_batch_runs():
     done = subprocess.run(

@@ -63,6 +63,7 @@ def test_even_designs_are_nearer(pushed, design):
     assert abs(failed.sum() - 512 * P_FAILURE) <= 2.0
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_truth(pushed):
     """Clopper-Pearson, over small batches each with a seed of its own."""
     batches, runs, confidence = 100, 24, 0.9

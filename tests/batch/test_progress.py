@@ -85,6 +85,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to send to oneself")
 def test_ctrl_c_without_progress():
     """A batch that nobody watches asks, too."""

@@ -167,6 +167,7 @@ def test_pandas_that_is_not_installed(batch, monkeypatch):
     assert builtins.__import__ is not missing
 
 
+@pytest.mark.slow
 def test_xarray(batch):
     data = batch.to_xarray()
     assert data.sizes == {"run_index": 9}

@@ -63,6 +63,7 @@ def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("breakaway.ask.comparison.comparing.write_end", lambda *_: None)
 
 
+@pytest.mark.slow
 def test_it_says_the_table_and_lists_its_files(
     call: Call, given: list[str], tmp_path: Path
 ) -> None:
@@ -87,6 +88,7 @@ def test_it_says_the_table_and_lists_its_files(
     assert str(out / "index.html") in content["files"]
 
 
+@pytest.mark.slow
 def test_a_comparison_runs_again_from_its_file(
     call: Call, given: list[str], tmp_path: Path
 ) -> None:
@@ -136,6 +138,7 @@ def test_an_unknown_population_exits_with_2(call: Call, tmp_path: Path) -> None:
     assert "did you mean seized_parts?" in failed.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(given: list[str], tmp_path: Path) -> None:
     out, file = tmp_path / "my out", tmp_path / "comparison.toml"

@@ -20,6 +20,7 @@ def save(path: Path, controller: dict[str, Any]) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_shows_designed_gains_and_verdicts(call: Call) -> None:
     shown = call("design", "paper_as_computed", "--require-stable")
     assert shown.exit_code == 0
@@ -31,6 +32,7 @@ def test_shows_designed_gains_and_verdicts(call: Call) -> None:
     assert shown.stdout.count("UNSTABLE") == 1  # where friction falls, which is not counted
 
 
+@pytest.mark.slow
 def test_shows_margins_and_the_limit_cycle(call: Call) -> None:
     shown = call("design", "paper_as_computed").stdout
     assert "As pid runs: every 10 µs, held, no delay; loop opened at the force" in shown
@@ -41,6 +43,7 @@ def test_shows_margins_and_the_limit_cycle(call: Call) -> None:
     assert ["frequency", "284.91", "Hz", "282.38", "Hz", "+0.9", "%"] in rows
 
 
+@pytest.mark.slow
 def test_json_holds_the_same(call: Call) -> None:
     content = json.loads(call("design", "paper_as_computed", "--json").stdout)
     [gains] = content["gain_sets"]
@@ -113,6 +116,7 @@ def test_a_joint_that_can_not_be_designed_for_exits_with_2(call: Call, tmp_path:
     assert "joint.coulomb_n" in failed.stderr
 
 
+@pytest.mark.slow
 def test_a_loop_that_sampling_undoes_is_not_safe(call: Call, tmp_path: Path) -> None:
     """Stable for Routh and Hurwitz, with kd T_s / m = 2.5 unstable as it runs."""
     gains = {"kind": "given", "kp_n_per_m": 1e5, "ki_n_per_m_s": 1e6, "kd_n_s_per_m": 2500.0}
@@ -131,6 +135,7 @@ def test_a_loop_that_sampling_undoes_is_not_safe(call: Call, tmp_path: Path) -> 
     assert (one["sliding"]["stable"], one["stable"], content["stable"]) == (True, False, False)
 
 
+@pytest.mark.slow
 def test_delay_and_filter_are_named(call: Call, tmp_path: Path) -> None:
     lagged = bk.load_scenario("paper_as_computed").with_(
         {"timing.one_sample_delay": True},
@@ -149,6 +154,7 @@ def test_delay_and_filter_are_named(call: Call, tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_out_holds_document_and_figures(call: Call, tmp_path: Path) -> None:
     out = tmp_path / "out"
     shown = call("design", "paper_as_computed", "--json", "--out", out)
@@ -167,6 +173,7 @@ def test_out_holds_document_and_figures(call: Call, tmp_path: Path) -> None:
     assert loops[2]["phase_margin_deg"] is None
 
 
+@pytest.mark.slow
 def test_a_folder_that_can_not_be_written_exits_with_3(call: Call, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     failed = call("design", "paper_as_computed", "--out", tmp_path / "file")

@@ -54,6 +54,7 @@ def test_a_folder_that_can_not_be_written_is_named(call: Call, tmp_path: Path) -
     assert "is a file, not a folder" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fmi", ["2", "3"])
 def test_writes_a_unit(call: Call, tmp_path: Path, fmi: str) -> None:
     out = tmp_path / "rig.fmu"
@@ -66,6 +67,7 @@ def test_writes_a_unit(call: Call, tmp_path: Path, fmi: str) -> None:
     assert "rig.fmu" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_unit_that_can_not_be_written_is_named(call: Call, tmp_path: Path) -> None:
     done = call("export", "fmu", "paper_as_computed", "--fmi", "1", "--out", tmp_path / "rig.fmu")
     assert done.exit_code == 2
@@ -77,6 +79,7 @@ def test_a_unit_that_can_not_be_written_is_named(call: Call, tmp_path: Path) -> 
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [("c", "out"), ("fmu", "out/rig.fmu")])
 def test_missing_folders_are_made(call: Call, tmp_path: Path, arguments: tuple[str, str]) -> None:
     kind, place = arguments

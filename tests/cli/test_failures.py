@@ -117,6 +117,7 @@ def test_an_unwritable_folder_is_found_before_the_simulation(
     assert call("run", "paper_as_computed", "--out", tmp_path / "file").exit_code == 3
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 @pytest.mark.parametrize(
     "args",
@@ -138,6 +139,7 @@ def test_a_full_disk_behind_the_output_exits_with_3(args: list[str]) -> None:
     assert failed.stderr == ("error: standard output: cannot be written: No space left on device\n")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 @pytest.mark.parametrize("args", [["run", "none.toml"], ["run", "--none"], ["none"]])
 def test_a_full_disk_behind_the_error_output_keeps_the_exit_code(args: list[str]) -> None:
@@ -146,6 +148,7 @@ def test_a_full_disk_behind_the_error_output_keeps_the_exit_code(args: list[str]
     assert failed.returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("args", [["schema"], ["--help"], ["study", "--help"], ["--version"]])
 def test_a_reader_that_stops_is_no_crash(args: list[str]) -> None:
     read, write = os.pipe()
@@ -157,6 +160,7 @@ def test_a_reader_that_stops_is_no_crash(args: list[str]) -> None:
     assert (ended.returncode, ended.stderr) == (3, "")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_leaves_nothing_behind(tmp_path: Path) -> None:
     scenario, out = tmp_path / "long.toml", tmp_path / "out"
@@ -178,6 +182,7 @@ def test_ctrl_c_leaves_nothing_behind(tmp_path: Path) -> None:
     assert not out.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_ends_a_fit_with_the_best_so_far(tmp_path: Path) -> None:
     t_s = np.arange(4000) / 500.0

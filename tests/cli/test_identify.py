@@ -237,6 +237,7 @@ def test_the_format_is_guessed_or_given(call: Call, rig_csv: Path, tmp_path: Pat
     assert guessed.stdout == told.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", [(), QUICK])
 def test_a_report_is_written_beside_the_joint_file(
     call: Call, log_csv: Path, tmp_path: Path, law: tuple[Any, ...]
@@ -279,6 +280,7 @@ BAD = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("args", "words"), BAD, ids=[" ".join(map(str, a[-2:])) for a, _ in BAD])
 def test_a_bad_option_is_one_line_and_writes_nothing(
     call: Call,

@@ -12,6 +12,8 @@ import pytest
 
 import breakaway as bk
 
+pytestmark = pytest.mark.slow
+
 Call = Callable[..., Any]
 SWEEP = """
 kind = "sweep"

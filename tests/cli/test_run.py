@@ -46,6 +46,7 @@ def test_json_is_one_document_with_null_for_what_did_not_happen(call: Call, tmp_
     assert "none" in call("run", short).stdout
 
 
+@pytest.mark.slow
 def test_writes_a_folder_that_reruns_to_the_same_bits(call: Call, tmp_path: Path) -> None:
     first, second = tmp_path / "deep" / "first", tmp_path / "second"
     noisy = save(
@@ -60,6 +61,7 @@ def test_writes_a_folder_that_reruns_to_the_same_bits(call: Call, tmp_path: Path
         assert (first / name).read_bytes() == (second / name).read_bytes(), name
 
 
+@pytest.mark.slow
 def test_what_is_written_is_what_ran(call: Call, tmp_path: Path) -> None:
     call("run", "paper_as_computed", "--out", tmp_path / "out")
     run = bk.simulate(bk.load_scenario("paper_as_computed"))
@@ -79,6 +81,7 @@ def test_what_is_written_is_what_ran(call: Call, tmp_path: Path) -> None:
     assert scenario["joint"]["residual_n"] == 9.81
 
 
+@pytest.mark.slow
 def test_a_run_without_trace_leaves_no_trace_of_an_earlier_one(call: Call, tmp_path: Path) -> None:
     out = tmp_path / "out"
     call("run", "paper_as_computed", "--out", out)
@@ -97,6 +100,7 @@ def test_names_the_limit_that_was_exceeded(call: Call, tmp_path: Path) -> None:
     assert "500 N exceeded" in shown.stdout
 
 
+@pytest.mark.slow
 def test_a_diverged_run_is_a_finding(call: Call, tmp_path: Path) -> None:
     wild = save(tmp_path / "wild.toml", {"limits.diverged_force_n": 400.0})
     shown = call("run", wild, "--out", tmp_path / "out")
@@ -120,6 +124,7 @@ def test_joint_tells_where_each_value_came_from(call: Call, joint_toml: Path) ->
         assert words in shown
 
 
+@pytest.mark.slow
 def test_joint_changes_the_run_and_reruns_without_the_joint_file(
     call: Call, joint_toml: Path, tmp_path: Path
 ) -> None:

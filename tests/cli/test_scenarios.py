@@ -120,6 +120,7 @@ def test_version(call: Call, option: str) -> None:
     assert call(option).stdout == f"breakaway {bk.__version__}\n"
 
 
+@pytest.mark.slow
 def test_starts_without_heavy_imports() -> None:
     script = (
         "import sys\n"

@@ -21,6 +21,8 @@ from breakaway.ask.tuning import load_tuning
 from breakaway.cli.starting import SchemaKind
 from breakaway.cli.starts import StartKind
 
+pytestmark = pytest.mark.slow
+
 Call = Callable[..., Any]
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LOAD: dict[str, Callable[[Path], Any]] = {

@@ -51,6 +51,7 @@ def write(tmp_path: Path, kind: str, /, **changes: str) -> Path:
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", STUDIES)
 def test_every_kind_says_its_result_and_lists_its_files(
     call: Call, tmp_path: Path, kind: str
@@ -74,12 +75,14 @@ def test_every_kind_says_its_result_and_lists_its_files(
         assert (out / name).read_bytes() == (tmp_path / "again" / name).read_bytes(), name
 
 
+@pytest.mark.slow
 def test_long_tables_say_where_the_rest_is(call: Call, tmp_path: Path) -> None:
     shown = call("study", write(tmp_path, "sweep"), "--out", tmp_path / "out")
     assert "the first 40 rows; points.csv has all" in shown.stdout
     assert len((tmp_path / "out" / "points.csv").read_text().splitlines()) == 51
 
 
+@pytest.mark.slow
 def test_a_folder_that_holds_a_study_wants_resume(call: Call, tmp_path: Path) -> None:
     path, out = write(tmp_path, "compare"), tmp_path / "out"
     first = call("study", path, "--out", out)
@@ -124,6 +127,7 @@ def test_a_study_does_not_write_over_its_file(call: Call, tmp_path: Path) -> Non
     assert (failed.exit_code, "but no manifest.json" in failed.stderr) == (2, True)
 
 
+@pytest.mark.slow
 def test_a_study_goes_on_by_its_own_file(call: Call, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert call("study", write(tmp_path, "sweep"), "--out", out).exit_code == 0
@@ -134,6 +138,7 @@ def test_a_study_goes_on_by_its_own_file(call: Call, tmp_path: Path) -> None:
     assert (out / "study.toml").read_bytes() == before
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     path, out = write(tmp_path, "sweep"), tmp_path / "out"

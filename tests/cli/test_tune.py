@@ -53,6 +53,7 @@ def write(tmp_path: Path, **changes: str) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_tuning_says_its_result_and_lists_its_files(call: Call, tmp_path: Path) -> None:
     path, out = write(tmp_path), tmp_path / "out"
     shown = call("tune", path, "--out", out)
@@ -154,6 +155,7 @@ def test_a_tuning_does_not_write_over_its_file(call: Call, tmp_path: Path) -> No
     assert (failed.exit_code, "is the file that was read" in failed.stderr) == (3, True)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     path, out = write(tmp_path, evaluations="evaluations = 10000"), tmp_path / "out"

@@ -49,6 +49,7 @@ def small(whole: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_threads_do_not_matter(inputs, whole, tmp_path):
     population, methods = inputs
     bk.compare_methods(
@@ -57,6 +58,7 @@ def test_threads_do_not_matter(inputs, whole, tmp_path):
     assert contents(tmp_path) == contents(whole)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_figures")
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_a_killed_process_loses_no_finished_part(small, tmp_path):
@@ -101,6 +103,7 @@ def test_a_finished_comparison_computes_and_draws_nothing(whole, tmp_path, monke
     assert contents(folder) == contents(whole)
 
 
+@pytest.mark.slow
 def test_a_missing_file_of_the_end_is_made_again(whole, tmp_path):
     folder = shutil.copytree(whole, tmp_path / "done")
     (folder / "course_2_lugre.svg").unlink()
@@ -145,6 +148,7 @@ def test_a_foreign_piece_is_computed_again_and_said(whole, tmp_path):
     assert done.table == bk.compare_methods(whole / "comparison.toml").table
 
 
+@pytest.mark.slow
 def test_an_edited_table_is_written_anew(whole, tmp_path):
     folder = shutil.copytree(whole, tmp_path / "edited")
     (folder / "table.csv").write_text("mine")

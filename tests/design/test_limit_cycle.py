@@ -98,6 +98,7 @@ def test_a_steady_limit_cycle_is_the_simulated_one(speed, one_hz):
     assert seven.amplitude_m_per_s == pytest.approx(amplitude, rel=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kd", "verdict"),
     [

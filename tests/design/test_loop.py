@@ -130,6 +130,7 @@ def by_hand(pid, k, c, slope, mass_kg, steps):
     return np.array(sizes)
 
 
+@pytest.mark.slow
 @given(
     kp=st.floats(1e4, 2e6),
     ki=st.floats(0.0, 5e8),

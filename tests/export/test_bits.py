@@ -46,6 +46,7 @@ def measured(rng: np.random.Generator, steps: int) -> np.ndarray:
     return inputs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("real", REALS)
 @pytest.mark.parametrize("name", CONTROLLERS)
 def test_controllers(name: str, real: str, tmp_path: Path) -> None:
@@ -62,6 +63,7 @@ def test_controllers(name: str, real: str, tmp_path: Path) -> None:
     assert len(np.unique(ours[:, 0])) > 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("real", REALS)
 @pytest.mark.parametrize("name", PLANTS)
 def test_plants(name: str, real: str, tmp_path: Path) -> None:
@@ -73,6 +75,7 @@ def test_plants(name: str, real: str, tmp_path: Path) -> None:
     assert len(np.unique(ours[:, 0])) > 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("real", REALS)
 @pytest.mark.parametrize("name", LOOPS)
 def test_loops(name: str, real: str, tmp_path: Path) -> None:

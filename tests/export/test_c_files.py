@@ -30,6 +30,7 @@ def exported(scenario: bk.Scenario, what: str, real: str, folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", WHATS)
 @pytest.mark.parametrize("real", REALS)
 def test_the_test_program_passes(what: str, real: str, tmp_path: Path) -> None:
@@ -51,6 +52,7 @@ def test_the_test_program_fails_where_a_number_differs(tmp_path: Path) -> None:
     assert "0 failed" not in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="needs cmake")
 def test_cmake_builds_and_tests_it(tmp_path: Path) -> None:
     folder = exported(BASE, "controller", "float", tmp_path)
@@ -63,6 +65,7 @@ def test_cmake_builds_and_tests_it(tmp_path: Path) -> None:
         assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", WHATS)
 def test_two_exports_are_the_same_bytes(what: str, tmp_path: Path) -> None:
     scenario = PLANTS["axis_stack_sensed"]

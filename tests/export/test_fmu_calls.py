@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from tests.export.units import VERSIONS, Exported, paper
 
+pytestmark = pytest.mark.slow
+
 COMMON = r"""
 #include "fmu.c"
 #include <stdio.h>

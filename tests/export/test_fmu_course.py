@@ -13,6 +13,8 @@ from tests.export.units import VERSIONS, Exported, impacts, paper
 
 import breakaway as bk
 
+pytestmark = pytest.mark.slow
+
 SCENARIOS = {"paper": paper, "impacts": impacts}
 
 COLUMNS = ("position_m", "velocity_m_per_s", "applied_force_n", "joint_force_n")

@@ -17,6 +17,8 @@ from tests.export.units import VERSIONS, WHATS, Exported, impacts, paper
 
 import breakaway as bk
 
+pytestmark = pytest.mark.slow
+
 SCENARIOS = {
     "paper": paper,
     "vibration": lambda: bk.load_scenario("paper_as_computed_vibration"),

@@ -14,6 +14,8 @@ from tests.export.units import Exported, paper
 
 import breakaway as bk
 
+pytestmark = pytest.mark.slow
+
 
 def test_libcosim_agrees_with_the_simulation(tmp_path: Path) -> None:
     pytest.importorskip("libcosimpy")

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from tests.export.units import VERSIONS, Exported, Unit, impacts, paper
 
+pytestmark = pytest.mark.slow
+
 PERIOD = 1e-5
 
 

@@ -339,6 +339,7 @@ def test_any_numbers_give_a_report_or_a_log_error(columns: Array) -> None:
 LEVELS = st.sampled_from([0.0, 0.0, 0.0, 1e-3, 0.01, -0.01])
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(
     st.lists(st.tuples(LEVELS, st.integers(1, 40), st.floats(-50.0, 50.0)), min_size=2, max_size=8),

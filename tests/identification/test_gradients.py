@@ -29,6 +29,7 @@ SMALL = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [{}, {"asymmetric": True, "position_dependent": True}])
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("settings", MOTIONS, ids=["imposed", "free", "cascade", "pid"])

@@ -42,6 +42,7 @@ def check(found: Identification, truth: dict[str, float], share: float, loose: f
             assert one.value == pytest.approx(true, rel=allowed), one
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "left_out"),
     [
@@ -108,6 +109,7 @@ def test_lugre_comes_back_from_a_known_force(pushed: Log, lugre: dict[str, float
     assert linear["mass_kg"].value == pytest.approx(3.0, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["coulomb", "stribeck"])
 def test_sliding_friction_comes_back_from_a_known_force(
     rig: Any, drives: Any, lugre: dict[str, float], law: str
@@ -439,6 +441,7 @@ def columns(rows: int) -> st.SearchStrategy[tuple[Any, ...]]:
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(
     data=st.integers(10, 200).flatmap(lambda rows: columns(rows)),

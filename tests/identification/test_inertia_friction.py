@@ -98,6 +98,7 @@ def test_recovers_exactly_without_noise() -> None:
     assert fit.relative_force_error_percent < 0.5
 
 
+@pytest.mark.slow
 def test_standard_errors_cover_the_truth() -> None:
     fits = [identify_inertia_friction(synthetic(seed=seed)).symmetric for seed in range(150)]
     for name, value in TRUTH.items():

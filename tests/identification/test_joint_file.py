@@ -260,6 +260,7 @@ def test_a_mass_comes_from_a_log_that_tells_it(looped: Log) -> None:
     assert "part.mass_kg" in joint.vary()
 
 
+@pytest.mark.slow
 def test_a_posterior_is_kept_as_draws(log: Log) -> None:
     pytest.importorskip("emcee")
     cut = log.between(0.0, 1.0).resampled(rate_hz=100.0)

@@ -60,6 +60,7 @@ def fitted() -> list[FittedDistribution]:
     return [fit_distribution(*draws(seed)) for seed in range(200)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "truth"), [("median", MEDIAN_N), ("sigma", SIGMA)])
 def test_intervals_cover_the_truth(
     fitted: list[FittedDistribution], name: str, truth: float

@@ -24,6 +24,7 @@ def compared() -> tuple[ComparedLaw, ...]:
     )
 
 
+@pytest.mark.slow
 def test_the_chosen_law_predicts_what_it_has_not_seen(compared: tuple[ComparedLaw, ...]) -> None:
     chosen = [one for one in compared if one.pays][-1]
     assert chosen.fit.law.has_bristle

@@ -39,6 +39,7 @@ def fit(clean: Log, seed: int, rho: float, size_n: float = 0.3) -> Identificatio
     return identify(replace(clean, force_n=force), law="coulomb", steps_per_row=1, starts=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rho", [0.0, 0.8])
 def test_standard_errors_are_the_spread_over_many_logs(clean: Log, rho: float) -> None:
     fits = [fit(clean, seed, rho) for seed in range(60)]
@@ -127,6 +128,7 @@ def test_a_profile_is_open_where_the_log_tells_nothing(clean: Log) -> None:
     assert not found["stribeck_velocity_m_per_s"].identifiable
 
 
+@pytest.mark.slow
 def test_the_posterior_agrees_with_the_linear_errors(linear: Identification) -> None:
     pytest.importorskip("emcee")
     seen: list[tuple[int, int]] = []
