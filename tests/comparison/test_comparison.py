@@ -19,6 +19,8 @@ from breakaway.ask.comparison.findings import sentences_of
 from breakaway.ask.comparison.table import median_row, table_of, worst_row
 from breakaway.run.trials import Trial
 
+pytestmark = pytest.mark.slow
+
 LAWS = ["lugre", "elasto_plastic"]
 
 
@@ -28,7 +30,6 @@ def columns_of(folder: Path, law: str, method: str) -> dict[str, np.ndarray]:
     return {name: table[name].to_numpy() for name in table.column_names}
 
 
-@pytest.mark.slow
 def test_the_folder_has_everything(whole, done):
     names = {path.name for path in whole.iterdir()}
     courses = {f"course_{place}_{law}" for place in (1, 2, 3) for law in LAWS}
@@ -214,7 +215,6 @@ def test_the_whole_comparison_reads_back(whole, done):
     assert Asked.parse(json.loads(done.asked.model_dump_json())) == done.asked
 
 
-@pytest.mark.slow
 def test_a_range_of_parts_is_these_parts(inputs, tmp_path):
     """Parts are functions of seed and number, so a range meets those that all of them would."""
     population, (method, *_) = inputs

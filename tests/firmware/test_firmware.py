@@ -15,6 +15,8 @@ from tests.firmware import tools
 from tests.firmware.cases import cases
 from tests.firmware.proof import first_difference, measure
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -17,6 +17,8 @@ from breakaway.model.scenario import Gentleness, load_method, load_population
 from breakaway.show.plots.comparison import Cloud, Course, plot_course, plot_scatter, plot_shares
 from breakaway.show.report.comparison import ShownFigure, comparison_page
 
+pytestmark = pytest.mark.slow
+
 METHODS = ["force_ramp", "paper_pid"]
 NAME = "<b>mine & co</b>"
 SHARES = ("released", "gentle", "strict")
@@ -125,7 +127,6 @@ class Page(HTMLParser):
         self.tags.append((tag, dict(attrs)))
 
 
-@pytest.mark.slow
 def test_the_page_needs_nothing_else(page):
     parsed = Page(page)
     names = ("href", "src", "xlink:href")
@@ -238,7 +239,6 @@ setTimeout(() => {
 """
 
 
-@pytest.mark.slow
 @browser
 def test_the_animation_moves_and_pauses(page, tmp_path):
     dom, console = browse(page, tmp_path, MOVES)
@@ -285,7 +285,6 @@ document.body.dataset.said = JSON.stringify(found);
 """
 
 
-@pytest.mark.slow
 @browser
 def test_keys_slider_and_choice_work(page, tmp_path):
     dom, console = browse(page, tmp_path, KEYS)
@@ -322,7 +321,6 @@ setTimeout(() => {
 """
 
 
-@pytest.mark.slow
 @browser
 def test_reduced_motion_is_respected(page, tmp_path):
     dom, console = browse(page, tmp_path, STEPS, "--force-prefers-reduced-motion")

@@ -32,6 +32,8 @@ from breakaway.show.report.identification import (
     uncertain,
 )
 
+pytestmark = pytest.mark.slow
+
 DATA = Path(__file__).parents[3] / "shared" / "data"
 SHA = "0123456789abcdef" * 4
 NAME = "<b>rig & co.csv"
@@ -119,7 +121,6 @@ class Page(HTMLParser):
             self.rows[-1] += data + " "
 
 
-@pytest.mark.slow
 def test_every_parameter_has_its_row(found, page):
     rows = Page(page).rows
     for one in found.estimates:
@@ -135,7 +136,6 @@ def test_every_parameter_has_its_row(found, page):
     assert "held at 0: inertia is too small" in mass
 
 
-@pytest.mark.slow
 def test_every_verdict_that_is_negative_has_its_reason_and_remedy(simple, simple_page):
     text = " ".join(Page(simple_page).rows)
     negative = [one for one in simple.verdicts if not one.identifiable]
@@ -214,19 +214,16 @@ def test_what_can_not_be_drawn_is_left_out_with_a_reason(simple_page):
     assert 'id="drift"' not in text and 'id="laws"' not in text and 'id="events"' not in text
 
 
-@pytest.mark.slow
 def test_a_fit_that_was_stopped_says_so(simple):
     text = identification_report(replace(simple, complete=False))
     assert "The fit was stopped before it finished" in text
 
 
-@pytest.mark.slow
 def test_a_stiction_ratio_that_was_held_is_no_peak():
     held = identify(synthetic(), law="stribeck", fixed={"stiction_ratio": 1.2}, starts=1)
     assert "Stiction peak: not identified (F_s / F_c was held)" in identification_report(held)
 
 
-@pytest.mark.slow
 def test_a_posterior_is_drawn_and_described(simple):
     draws = Posterior(simple.draws(200), 31.4, 0.5, walkers=64, steps=40, weight=0.25)
     text = identification_report(simple, posterior=draws)
@@ -234,7 +231,6 @@ def test_a_posterior_is_drawn_and_described(simple):
     assert "200 draws, 64 walkers, 40 steps, autocorrelation time 31.4 steps, 50 %" in text
 
 
-@pytest.mark.slow
 def test_a_closed_loop_names_its_controller():
     cascade = Cascade(position_gain_per_s=50.0, velocity_gain_n_s_per_m=300.0, force_limit_n=1e3)
     t_s = np.arange(2000) / 1000.0
@@ -250,7 +246,6 @@ def test_a_closed_loop_names_its_controller():
     assert "given as arrays; it has no digest" in text
 
 
-@pytest.mark.slow
 def test_saved_whole_or_not_at_all(simple, simple_page, tmp_path):
     save_identification_report(tmp_path / "report.html", simple)
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == simple_page
@@ -279,7 +274,6 @@ def browse(page: Path, profile: Path, *options: str) -> subprocess.CompletedProc
     )
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="chromium is not on the path")
 def test_the_page_shows_in_a_browser(page, tmp_path):
     file = tmp_path / "report.html"
@@ -292,7 +286,6 @@ def test_the_page_shows_in_a_browser(page, tmp_path):
     assert picture.stat().st_size > 10_000
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not (DATA / "emps").exists(), reason="the measured log is not here")
 def test_a_measured_log_has_its_page():
     log = read_log(DATA / "emps" / "DATA_EMPS.mat")

@@ -18,6 +18,8 @@ from breakaway.ask.reproduction.survey import DisturbanceRange
 from breakaway.ask.reproduction.tables import TABLE_2, table_2
 from breakaway.errors import OutputError
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory, simulated):
@@ -30,7 +32,6 @@ def out(tmp_path_factory, simulated):
     return folder
 
 
-@pytest.mark.slow
 def test_it_tells_what_it_is_at(simulated):
     _, told = simulated
     assert len(told) > 3
@@ -41,7 +42,6 @@ def values(out):
     return json.loads((out / "reproduction.json").read_text(encoding="utf-8"))
 
 
-@pytest.mark.slow
 def test_all_18_gains_agree(values):
     keys = [
         f"table2.{control}.{kind}.{gain}"
@@ -162,7 +162,6 @@ def test_the_page_needs_nothing_else(out):
     assert "<script" not in text
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="chromium is not on the path")
 def test_the_page_shows_in_a_browser(out, tmp_path):
     options = [

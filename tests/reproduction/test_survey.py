@@ -25,6 +25,8 @@ from breakaway.ask.reproduction.survey import (
 from breakaway.cli.reproduce import reproduce as reproduce_command
 from breakaway.errors import OutputError, StudyError
 
+pytestmark = pytest.mark.slow
+
 SMALL = FullSurvey(levels=(0.0, 0.05, 0.5), seeds=6)
 
 
@@ -54,7 +56,6 @@ def test_the_full_levels_hold_what_the_paper_prints():
     assert list(FULL_LEVELS) == sorted(set(FULL_LEVELS))
 
 
-@pytest.mark.slow
 def test_both_ways_and_single_runs_give_the_same_bits(whole):
     for control, kept in read_survey(whole).items():
         scenario = bk.load_scenario(CONTROLS[control])
@@ -68,7 +69,6 @@ def test_both_ways_and_single_runs_give_the_same_bits(whole):
         assert run.outcome == "diverged" or run.metrics.iae_m_s == kept.iae_m_s[2, 5]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("runs", [1, 30])
 def test_an_interrupted_survey_goes_on_to_the_same_files(whole, tmp_path, runs):
     folder = tmp_path / "figure_10"
@@ -83,7 +83,6 @@ def test_an_interrupted_survey_goes_on_to_the_same_files(whole, tmp_path, runs):
         assert (folder / path).stat().st_mtime_ns == kept[path]
 
 
-@pytest.mark.slow
 def test_what_is_done_is_found_and_told(whole):
     told = []
     dataclasses.replace(SMALL, progress=told.append).run(whole)
@@ -91,7 +90,6 @@ def test_what_is_done_is_found_and_told(whole):
     assert [at.doing for at in told][::3] == [control.replace("_", " ") for control in CONTROLS]
 
 
-@pytest.mark.slow
 def test_a_damaged_level_is_computed_again_and_said(whole, tmp_path):
     folder = tmp_path / "figure_10"
     shutil.copytree(whole, folder)
@@ -153,7 +151,6 @@ def test_rows_count_bound_and_leave_out_what_diverged():
     assert survey.level(0.12) == 1
 
 
-@pytest.mark.slow
 def test_the_report_takes_the_full_survey(tmp_path, monkeypatch, simulated):
     few = FullSurvey(levels=(0.0, 0.05, 0.085, 0.125), seeds=4)
     runs, _ = simulated
