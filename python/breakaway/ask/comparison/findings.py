@@ -176,7 +176,9 @@ def _failing(asked: Asked, rows: Sequence[Row]) -> list[str]:
             parts.append(
                 f"{CRITERION_WORDS[name]}{where}, within its limit for {kept} of the parts"
             )
-        said.append(f"{method} frees {gentle} gently; it fails most often by {' and '.join(parts)}")
+        said.append(
+            f"{method} frees {gentle} gently; it fails most often because of {' and '.join(parts)}"
+        )
     return said
 
 

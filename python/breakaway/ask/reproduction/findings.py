@@ -63,7 +63,7 @@ def misprints() -> list[Finding]:
             "The characteristic polynomial lacks an s",
             "(s + a)(s² + 2 ε ω + ω²)",
             "(s + a)(s² + 2 ε ω s + ω²)",
-            "Without the s its middle term is a constant, and the gains do not result.",
+            "Without the s its middle term is a constant, and the gains do not follow from it.",
         ),
         misprint(
             "static_gains",
