@@ -30,8 +30,7 @@ fn the_cases_break_loose_slide_and_leave() {
         (cases, free) = (cases + 1, free + usize::from(run.metrics.time_to_release_s.is_finite()));
     }
     assert_eq!(cases, 2 * 18 * 4 * 2 * 2 * 2 + cases::more_count());
-    // Some pairs of law and controller do not come out, and each law adds a few.
-    assert!(free > cases * 95 / 100, "{free} of {cases} parts leave their joint to stay free");
+    assert!(free > cases * 98 / 100, "{free} of {cases} parts leave their joint to stay free");
 }
 
 #[test]
