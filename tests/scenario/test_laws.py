@@ -82,8 +82,8 @@ def test_the_attraction_follows_the_stiction_force() -> None:
 def test_laws_with_a_number() -> None:
     assert laws_with({"elastic_share"}) == ["elasto_plastic"]
     given = laws_with({"stiffness_n_per_m", "viscous_n_s_per_m"})
-    assert {"lugre", "elasto_plastic", "gms"} <= set(given)
-    assert not {"two_region", "coulomb_stiction"} & set(given)
+    viscous = ["lugre", "elasto_plastic", "gms"]
+    assert [law for law in given if law in (*viscous, "two_region", "coulomb_stiction")] == viscous
     assert laws_with({"stiction_ratio"}) == []
 
 

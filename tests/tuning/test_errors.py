@@ -118,10 +118,13 @@ def test_a_missing_optuna_names_the_extra(feed, tmp_path, monkeypatch):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("name", ["evaluations", "threads"])
+@pytest.mark.parametrize(
+    ("name", "range_"), [("evaluations", "from 1 to 10000$"), ("threads", ">= 1 and <= 1024$")]
+)
 @pytest.mark.parametrize("value", [0, -1, 1.5, True])
-def test_counts_are_checked(feed, tmp_path, name, value):
-    with pytest.raises(bk.StudyError, match=rf"{name}: {value} is not a whole number"):
+def test_counts_are_checked(feed, tmp_path, name, range_, value):
+    end = rf" {range_}" if type(value) is int else "; give one$"
+    with pytest.raises(bk.StudyError, match=rf"^{name}: {value} is not a whole number{end}"):
         bk.tune(feed(), out=tmp_path / "out", **{name: value})
     assert not (tmp_path / "out").exists()
 
