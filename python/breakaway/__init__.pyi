@@ -66,11 +66,15 @@ from breakaway.measure.logs import read_log as read_log
 from breakaway.model.friction.imposed import ImposedMotion as ImposedMotion
 from breakaway.model.friction.imposed import impose_motion as impose_motion
 from breakaway.model.scenario import BandLimitedDisturbance as BandLimitedDisturbance
+from breakaway.model.scenario import ConstantNormalForce as ConstantNormalForce
 from breakaway.model.scenario import Contact as Contact
 from breakaway.model.scenario import CoulombStiction as CoulombStiction
+from breakaway.model.scenario import CourseNormalForce as CourseNormalForce
+from breakaway.model.scenario import Drift as Drift
 from breakaway.model.scenario import ElastoPlastic as ElastoPlastic
 from breakaway.model.scenario import FeedAxis as FeedAxis
 from breakaway.model.scenario import FeedSettings as FeedSettings
+from breakaway.model.scenario import FieldDisturbance as FieldDisturbance
 from breakaway.model.scenario import FmPulses as FmPulses
 from breakaway.model.scenario import FmVibration as FmVibration
 from breakaway.model.scenario import ForceActuator as ForceActuator
@@ -81,6 +85,7 @@ from breakaway.model.scenario import GaussianDisturbance as GaussianDisturbance
 from breakaway.model.scenario import Gentleness as Gentleness
 from breakaway.model.scenario import Gms as Gms
 from breakaway.model.scenario import IdealActuator as IdealActuator
+from breakaway.model.scenario import InterferenceNormalForce as InterferenceNormalForce
 from breakaway.model.scenario import LawNumbers as LawNumbers
 from breakaway.model.scenario import Limits as Limits
 from breakaway.model.scenario import LogNormal as LogNormal
@@ -89,6 +94,7 @@ from breakaway.model.scenario import Lugre as Lugre
 from breakaway.model.scenario import Method as Method
 from breakaway.model.scenario import MinimumJerk as MinimumJerk
 from breakaway.model.scenario import Normal as Normal
+from breakaway.model.scenario import NormalVibration as NormalVibration
 from breakaway.model.scenario import Part as Part
 from breakaway.model.scenario import PartDistributions as PartDistributions
 from breakaway.model.scenario import PartPopulation as PartPopulation
@@ -103,12 +109,15 @@ from breakaway.model.scenario import RigidTip as RigidTip
 from breakaway.model.scenario import Samples as Samples
 from breakaway.model.scenario import Scenario as Scenario
 from breakaway.model.scenario import Sensors as Sensors
+from breakaway.model.scenario import SpringNormalForce as SpringNormalForce
 from breakaway.model.scenario import StackPulses as StackPulses
 from breakaway.model.scenario import SteadyFeed as SteadyFeed
 from breakaway.model.scenario import StepReference as StepReference
+from breakaway.model.scenario import TemperatureNormalForce as TemperatureNormalForce
 from breakaway.model.scenario import TimedImpacts as TimedImpacts
 from breakaway.model.scenario import Timing as Timing
 from breakaway.model.scenario import Trace as Trace
+from breakaway.model.scenario import TransverseVibration as TransverseVibration
 from breakaway.model.scenario import TrapezoidalVelocity as TrapezoidalVelocity
 from breakaway.model.scenario import TwoRegion as TwoRegion
 from breakaway.model.scenario import TwoStep as TwoStep
@@ -127,6 +136,8 @@ from breakaway.run.batch import Batch as Batch
 from breakaway.run.batch import draw_columns as draw_columns
 from breakaway.run.batch import grid_columns as grid_columns
 from breakaway.run.batch import simulate_many as simulate_many
+from breakaway.run.field import FrictionField as FrictionField
+from breakaway.run.field import friction_field as friction_field
 from breakaway.run.finished import Outcome as Outcome
 from breakaway.run.finished import Run as Run
 from breakaway.run.finished import RunMetrics as RunMetrics

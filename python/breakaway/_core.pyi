@@ -28,6 +28,9 @@ def friction_curve(
     position_m: NDArray[np.float64],
     velocity_m_per_s: NDArray[np.float64],
 ) -> list[bytes]: ...
+def friction_field(
+    field: Mapping[str, Any], seed: int, run: int, position_m: NDArray[np.float64]
+) -> list[bytes]: ...
 def law_form(joint: Mapping[str, Any]) -> Literal["bristle", "elements", "rigid"]: ...
 
 OUTCOMES: Sequence[str]

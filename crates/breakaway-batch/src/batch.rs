@@ -1,8 +1,10 @@
 //! Many runs of one extraction, each with numbers and draws of its own, and what they give.
 
 use breakaway_core::metrics::{Groups, Limits};
+use breakaway_core::variation::FieldKeys;
 use breakaway_core::{Extraction, Outcome};
 
+use crate::draws::field_keys;
 use crate::figures::Figure;
 use crate::lanes::Wide;
 use crate::run::{Job, Run};
@@ -60,14 +62,31 @@ impl Batch<'_> {
     /// The numbers of several runs side by side: in each lane those of run number `runs[lane]`.
     pub(crate) fn gather<V: Wide>(&self, runs: &[usize]) -> (Extraction<V>, Limits<V>) {
         let mut place = 0;
-        self.common.map_numbers(&mut |_, value| {
+        let (mut extraction, limits) = self.common.map_numbers(&mut |_, value| {
             let varied = self.varied.iter().find(|varied| varied.place == place);
             place += 1;
             varied.map_or_else(
                 || V::constant(value),
                 |varied| V::gather(&runs.iter().map(|&i| varied.values[i]).collect::<Vec<f64>>()),
             )
-        })
+        });
+        if let Some(field) = &mut extraction.variation.field {
+            field.keys = self.field_keys(runs);
+        }
+        (extraction, limits)
+    }
+
+    /// What makes the fields of several runs their own.
+    fn field_keys<V: Wide>(&self, runs: &[usize]) -> FieldKeys<V> {
+        let keys: Vec<_> =
+            runs.iter().map(|&i| field_keys(self.common.seed, self.runs[i])).collect();
+        let gathered =
+            |of: fn(&FieldKeys<f64>) -> f64| V::gather(&keys.iter().map(of).collect::<Vec<f64>>());
+        FieldKeys {
+            first: gathered(|keys| keys.first),
+            second: gathered(|keys| keys.second),
+            offset: gathered(|keys| keys.offset),
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 
 use breakaway_core::Real;
 use breakaway_core::disturbance::{Disturbance, DrawLaw};
+use breakaway_core::variation::FieldKeys;
 
 use crate::normal::quantile;
 
@@ -19,6 +20,8 @@ pub enum Stream {
     Disturbance,
     /// The noise of the sensors.
     Noise,
+    /// What makes the field of a run its own.
+    Field,
     /// A number of the scenario that differs from run to run, counted from zero.
     Part(u32),
 }
@@ -29,6 +32,7 @@ impl Stream {
             Self::Disturbance => 0,
             Self::Part(number) => 1 + number,
             Self::Noise => u32::MAX,
+            Self::Field => u32::MAX - 1,
         }
     }
 }
@@ -137,6 +141,27 @@ pub fn uniform(seed: u64, run: u64, stream: Stream, index: u32) -> f64 {
 #[must_use]
 pub fn fraction(seed: u64, run: u64, stream: Stream) -> f64 {
     open(bits(seed, &[run], stream, &[0])[0])
+}
+
+/// What makes the field of a run its own.
+///
+/// # Example
+/// ```
+/// use breakaway_batch::draws::field_keys;
+/// let keys = field_keys(7, 3);
+/// assert!(keys.first.abs() <= 33_554_432.0 && (0.0..1.0).contains(&keys.offset));
+/// assert_ne!(keys, field_keys(7, 4));
+/// ```
+#[must_use]
+pub fn field_keys(seed: u64, run: u64) -> FieldKeys<f64> {
+    let counter = [[0], [u64::from(Stream::Field.word())], [run & LOW], [run >> 32]];
+    let words = philox4x32(counter, [seed as u32, (seed >> 32) as u32]);
+    let whole = |word: u64| (word >> 6) as f64 - f64::from(1_u32 << 25);
+    FieldKeys {
+        first: whole(words[0][0]),
+        second: whole(words[1][0]),
+        offset: words[2][0] as f64 * 2.0_f64.powi(-32),
+    }
 }
 
 /// When the first draw is due in a run that begins with `sample`: never, if it has no disturbance.

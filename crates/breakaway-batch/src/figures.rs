@@ -5,6 +5,7 @@ use breakaway_core::metrics::Groups;
 use crate::run::{Job, Run};
 use breakaway_core::actuator::{Actuator, FeedAxis, Piezo, Tip};
 use breakaway_core::joint::Law;
+use breakaway_core::variation::FieldCell;
 use std::f64::consts::PI;
 
 /// A figure of a finished run.
@@ -54,7 +55,7 @@ pub const FIGURES: &[Figure] = &[
     Figure {
         name: "peak_over_breakaway",
         needs: EXTREMES,
-        value: |job, run| run.metrics.peak_force_n / job.extraction.joint.breakaway_force(0.0),
+        value: |job, run| run.metrics.peak_force_n / breakaway_force_n(job),
     },
     Figure {
         name: "mean_force_n",
@@ -110,6 +111,14 @@ pub const FIGURES: &[Figure] = &[
     metric!(stop_reason, END),
     metric!(final_position_m, END),
 ];
+
+/// The force that breaks the part loose at the seat: with what varies it at the start, but for a
+/// factor that is redrawn.
+fn breakaway_force_n(job: &Job) -> f64 {
+    let variation = job.drawn().extraction.variation;
+    job.extraction.joint.breakaway_force(0.0)
+        * variation.factor(&mut FieldCell::nowhere(), 0.0, 0.0)
+}
 
 /// The stack of an extraction, if it has one.
 fn stack(job: &Job) -> Option<Piezo<f64>> {

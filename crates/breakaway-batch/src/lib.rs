@@ -6,6 +6,7 @@
 
 pub mod batch;
 pub mod draws;
+pub mod field;
 pub mod figures;
 pub mod imposed;
 pub mod instructions;
@@ -24,6 +25,7 @@ pub mod yardstick;
 
 pub use batch::{Batch, Results, Varied, Wanted};
 pub use draws::HeldDraws;
+pub use field::{FieldCourse, field_course};
 pub use figures::{FIGURES, Figure};
 pub use imposed::{ImposedMotion, imposed_motion};
 pub use instructions::Instructions;

@@ -6,11 +6,12 @@ use breakaway_core::extraction::{Sample, Timing};
 use breakaway_core::joint::Joint;
 use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::sensor::Noise;
+use breakaway_core::variation::Variation;
 use breakaway_core::{Draws, Extraction, ExtractionState, Metrics, Name, Outcome, Real};
 
 use std::ops::Range;
 
-use crate::draws::{HeldDraws, noise};
+use crate::draws::{HeldDraws, field_keys, noise};
 use crate::paths::numbered;
 
 /// The names of a trace's columns. The last three are of a feed axis, and empty without one.
@@ -122,6 +123,7 @@ pub(crate) fn plain_kinds<R: Real>(extraction: &Extraction<R>) -> Option<Extract
     match (joint, controller, actuator) {
         (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
             if joint.is_plain()
+                && extraction.variation.is_field_at_most()
                 && extraction.sensors.is_none()
                 && extraction.watch.is_none()
                 && pid.is_plain()
@@ -131,6 +133,7 @@ pub(crate) fn plain_kinds<R: Real>(extraction: &Extraction<R>) -> Option<Extract
                 joint: Joint::Lugre(joint.plain()),
                 controller: Controller::Pid(Pid::plain(pid.gains)),
                 actuator: Actuator::Ideal,
+                variation: Variation { drift: None, normal_force: None, ..extraction.variation },
                 sensors: None,
                 watch: None,
                 timing: Timing::every_period_once(timing.control_period_s),
@@ -147,11 +150,17 @@ fn run_kinds<const AXIS: bool, E>(
     mut keep_going: impl FnMut() -> Result<(), E>,
 ) -> Result<Run, E> {
     let mut progress = Progress { state: ExtractionState::at_rest(), metrics: Metrics::new() };
+    let job = &job.drawn();
     let Extraction { disturbance, timing, .. } = job.extraction;
     let mut draws =
         HeldDraws::new(job.seed, [job.run], |_| disturbance, |_| timing.control_period_s);
     let mut rows = Rows::of(job);
-    let plain = if AXIS { None } else { plain_kinds(&job.extraction) };
+    let plain = if AXIS || !job.extraction.variation.is_none() {
+        None
+    } else {
+        plain_kinds(&job.extraction)
+            .map(|plain| Extraction { variation: Variation::none(), ..plain })
+    };
     let per_check = (STEPS_PER_CHECK / u64::from(job.extraction.timing.steps_per_period)).max(1);
     let mut n = 0;
     while n < job.samples && progress.metrics.goes_on() {
@@ -318,6 +327,16 @@ impl Run {
 }
 
 impl Job {
+    /// The job with what is drawn for its run before it.
+    #[must_use]
+    pub fn drawn(&self) -> Self {
+        let mut job = *self;
+        if let Some(field) = &mut job.extraction.variation.field {
+            field.keys = field_keys(self.seed, self.run);
+        }
+        job
+    }
+
     /// Applies `f` to every number: those of the extraction, then those of the limits.
     pub(crate) fn map_numbers<S: Real>(
         &self,

@@ -5,6 +5,7 @@ use std::ops::Range;
 use breakaway_core::metrics::Limits;
 use breakaway_core::reference::{Reference, Setpoint};
 use breakaway_core::sensor::Noise;
+use breakaway_core::variation::Variation;
 use breakaway_core::{Extraction, ExtractionState, Metrics};
 
 use crate::draws::HeldDraws;
@@ -51,7 +52,18 @@ impl Kernel for Trusted<'_> {
         let (mut n, samples) = (0, batch.common.samples);
         while n < samples && work.goes_on() {
             let end = samples.min(n + BLOCK);
-            moving.advance(work, &plain, &limits, &setpoints, n..end);
+            // Written twice so that compilers see which it is.
+            match plain.variation.field {
+                None => {
+                    let plain = Extraction { variation: Variation::none(), ..plain };
+                    moving.advance(work, &plain, &limits, &setpoints, n..end);
+                }
+                Some(field) => {
+                    let variation = Variation { field: Some(field), ..Variation::none() };
+                    let plain = Extraction { variation, ..plain };
+                    moving.advance(work, &plain, &limits, &setpoints, n..end);
+                }
+            }
             if !moving.all_within(&limits) {
                 return false;
             }

@@ -135,6 +135,11 @@ impl<R: Real, const P: usize> Real for Dual<R, P> {
         }
         out
     }
+    /// Its slope is zero where it has one.
+    #[inline(always)]
+    fn round(self) -> Self {
+        Self { value: self.value.round(), derivative: [R::zero(); P] }
+    }
     #[inline(always)]
     fn exp2_parts(self) -> (Self, Self) {
         let (fraction, power) = self.value.exp2_parts();

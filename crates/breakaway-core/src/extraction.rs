@@ -11,6 +11,7 @@ use crate::plant::{Integrator, Plant, PlantState};
 use crate::real::{Block, Real};
 use crate::reference::{Reference, Setpoint};
 use crate::sensor::{Noise, Sensors, SensorsState};
+use crate::variation::Variation;
 
 parameters! {
     /// The part that is extracted.
@@ -87,7 +88,9 @@ pub struct Extraction<R> {
     pub part: Part<R>,
     /// Where the part should be.
     pub reference: Reference<R>,
-    /// What is not known of the joint.
+    /// How its friction varies along the way, during a pull, and with the normal force.
+    pub variation: Variation<R>,
+    /// The paper's random factor on the joint.
     pub disturbance: Disturbance<R>,
     /// What pushes.
     pub actuator: Actuator<R>,
@@ -216,6 +219,7 @@ impl<R: Real> Extraction<R> {
             joint: within!("joint", self.joint, f),
             part: within!("part", self.part, f),
             reference: within!("reference", self.reference, f),
+            variation: within!("variation", self.variation, f),
             disturbance: within!("disturbance", self.disturbance, f),
             actuator: within!("actuator", self.actuator, f),
             sensors: self.sensors.as_ref().map(|sensors| within!("sensors", sensors, f)),
@@ -253,15 +257,15 @@ impl<R: Real> Extraction<R> {
         factors: &Factors<R>,
         noise: &Noise<R>,
     ) -> Sample<R> {
-        let before = state.plant;
+        let (before, time_s) = (state.plant, setpoint.time_s);
         let measured = self.measure(state, setpoint, noise);
         let decided = apart::<R, _, APART>(Deciding { loop_: self, state, measured: &measured });
         let command = self.delay(&mut state.sampling, decided);
         let period =
-            apart::<R, _, APART>(Moving { loop_: self, state, command: &command, factors });
+            apart::<R, _, APART>(Moving { loop_: self, state, command: &command, factors, time_s });
         state.sampling.force_n = period.force_n;
         Sample {
-            time_s: setpoint.time_s,
+            time_s,
             period_s: self.timing.control_period_s,
             reference_m: setpoint.position_m,
             commanded_m_per_s: self.controller.commanded_speed(
@@ -345,18 +349,20 @@ impl<R: Real> Extraction<R> {
         core::mem::replace(&mut sampling.waiting, decided)
     }
 
-    /// Integrates over one period with a command held.
+    /// Integrates over one period from time `time_s` on, with a command held.
     #[inline(always)]
     pub fn move_plant(
         &self,
         state: &mut ExtractionState<R>,
         command: &Command<R>,
         factors: &Factors<R>,
+        time_s: R,
     ) -> Period<R> {
         let steps = self.timing.steps_per_period;
-        let (h, mut sum) = (self.step_s(), Period::none());
+        let (h, mut sum, mut time_s) = (self.step_s(), Period::none(), time_s);
         for _ in 0..steps {
-            let step = self.move_once(state, command, factors, h);
+            let step = self.move_once(state, command, factors, time_s);
+            time_s = time_s + h;
             if steps == 1 {
                 return step;
             }
@@ -378,15 +384,16 @@ impl<R: Real> Extraction<R> {
         if self.timing.steps_per_period == 1 { period_s } else { period_s * self.step_share() }
     }
 
-    /// One integration step: the actuator drives, the plant solves, the actuator yields.
+    /// One integration step from time `time_s` on: the actuator drives, the plant solves, the actuator yields.
     #[inline(always)]
     pub fn move_once(
         &self,
         state: &mut ExtractionState<R>,
         command: &Command<R>,
         factors: &Factors<R>,
-        h: R,
+        time_s: R,
     ) -> Period<R> {
+        let h = self.step_s();
         let part_m = state.plant.position_m;
         let driven = self.actuator.drive(&mut state.actuator, command, part_m, h);
         let plant = Plant {
@@ -394,8 +401,9 @@ impl<R: Real> Extraction<R> {
             mass_kg: self.part.mass_kg,
             push: driven.push,
             factors: *factors,
+            variation: &self.variation,
         };
-        let moved = plant.step(self.timing.integrator, &mut state.plant, h);
+        let moved = plant.step(self.timing.integrator, &mut state.plant, time_s, h);
         let (push, v) = (moved.push_force_n, moved.mean_velocity_m_per_s);
         let travel = v * h;
         Period {
@@ -431,6 +439,7 @@ struct Moving<'a, R> {
     state: &'a mut ExtractionState<R>,
     command: &'a Command<R>,
     factors: &'a Factors<R>,
+    time_s: R,
 }
 
 impl<R: Real> Block for Moving<'_, R> {
@@ -438,7 +447,7 @@ impl<R: Real> Block for Moving<'_, R> {
 
     #[inline(always)]
     fn compute(self) -> Period<R> {
-        self.loop_.move_plant(self.state, self.command, self.factors)
+        self.loop_.move_plant(self.state, self.command, self.factors, self.time_s)
     }
 }
 

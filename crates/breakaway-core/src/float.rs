@@ -1,6 +1,6 @@
 //! `f64` and `f32` as numbers of the equations.
 
-use crate::real::Real;
+use crate::real::{Function, Real};
 use crate::{exp2, fused};
 
 macro_rules! impl_real {
@@ -24,6 +24,14 @@ macro_rules! impl_real {
             #[inline(always)]
             fn select(mask: bool, yes: Self, no: Self) -> Self {
                 if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn renewed<F: Function<K, N>, const K: usize, const N: usize>(
+                needed: bool,
+                kept: [Self; N],
+                from: [Self; K],
+            ) -> [Self; N] {
+                if needed { F::of(from) } else { kept }
             }
             #[inline(always)]
             fn known(holds: bool) -> bool {

@@ -1,6 +1,7 @@
 //! Motion imposed on a joint, as on a test rig.
 
 use crate::joint::{At, Bristle, Elements, Frozen, Law, Rigid};
+use crate::maybe::Maybe;
 use crate::plant::PlantState;
 use crate::real::Real;
 
@@ -22,7 +23,13 @@ pub fn impose_motion<R: Real>(joint: &impl Law<R>, state: &mut PlantState<R>, v:
     let k = R::constant(0.5) * h;
     let x_mid = k.mul_add(v, state.position_m);
     let engaged = x_mid.lt(joint.engagement_length_m());
-    let at = At { position_m: x_mid, velocity_m_per_s: v, level_factor: one, ahead_s: k };
+    let at = At {
+        position_m: x_mid,
+        velocity_m_per_s: v,
+        level_factor: one,
+        transverse_m_per_s: Maybe::none(),
+        ahead_s: k,
+    };
     let force = joint.frozen(&settled, &at, Imposed { state, v, k, engaged });
     let force = R::select(engaged, force, zero);
     state.bristle_m = R::select(engaged, state.bristle_m, zero);

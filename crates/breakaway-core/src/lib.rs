@@ -33,6 +33,7 @@ pub mod exp2;
 mod float;
 mod fused;
 mod parameters;
+mod sine;
 mod states;
 
 pub mod actuator;
@@ -52,6 +53,7 @@ pub mod reference;
 pub mod rig;
 pub mod sensor;
 pub mod test_models;
+pub mod variation;
 
 pub use disturbance::Draws;
 pub use dual::Dual;

@@ -6,6 +6,7 @@ use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::variation::{FieldCell, Variation};
 
 /// What moves: the part on its seat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,10 @@ pub struct PlantState<R> {
     pub joint_force_n: R,
     /// What a law with several elements remembers of each; other laws leave it alone.
     pub elements: ElementState<R>,
+    /// z_y in m, deflection of the bristles across the motion; zero where nothing vibrates there.
+    pub transverse_bristle_m: R,
+    /// Where in a field of friction the part was last.
+    pub cell: FieldCell<R>,
 }
 
 impl<R: Copy> PlantState<R> {
@@ -34,6 +39,8 @@ impl<R: Copy> PlantState<R> {
             sliding: f(Name::of("sliding"), self.sliding),
             joint_force_n: f(Name::of("joint_force_n"), self.joint_force_n),
             elements: within!("elements", self.elements, f),
+            transverse_bristle_m: f(Name::of("transverse_bristle_m"), self.transverse_bristle_m),
+            cell: within!("cell", self.cell, f),
         }
     }
 }
@@ -50,12 +57,18 @@ impl<R: Real> PlantState<R> {
             sliding: zero,
             joint_force_n: zero,
             elements: ElementState::at_rest(),
+            transverse_bristle_m: zero,
+            cell: FieldCell::nowhere(),
         }
     }
 
     #[inline(always)]
     pub(crate) fn joint(&self) -> JointState<R> {
-        JointState { bristle_m: self.bristle_m, sliding: self.sliding }
+        JointState {
+            bristle_m: self.bristle_m,
+            transverse_bristle_m: self.transverse_bristle_m,
+            sliding: self.sliding,
+        }
     }
 
     /// What the bristles of a joint in this state hold, in J.
@@ -143,6 +156,8 @@ pub struct Plant<'a, R, L> {
     pub push: Push<R>,
     /// The disturbance, constant over a step.
     pub factors: Factors<R>,
+    /// How the friction levels vary otherwise; over a step they are those of its middle.
+    pub variation: &'a Variation<R>,
 }
 
 /// What a step of the midpoint rule starts from.
@@ -156,26 +171,46 @@ struct Midpoint<R: Real> {
     q: R,
     /// Whether the joint still holds at the middle of the step.
     engaged: R::Mask,
+    /// Velocity across the motion, if there is any, m/s.
+    transverse_m_per_s: Maybe<R>,
 }
 
 impl<R: Real, L: Law<R>> Plant<'_, R, L> {
-    /// Steps by `h` seconds.
+    /// Steps by `h` seconds from time `t` in s.
     ///
     /// Runge-Kutta steps a rigid push on a law of one bristle; callers see to that. With anything
     /// else it gives numbers that are none.
     #[inline(always)]
-    pub fn step(&self, integrator: Integrator, state: &mut PlantState<R>, h: R) -> Moved<R> {
-        let settled = self.joint.settle(
-            state.joint(),
-            state.position_m,
-            state.velocity_m_per_s,
-            self.factors.friction_level,
-        );
+    pub fn step(&self, integrator: Integrator, state: &mut PlantState<R>, t: R, h: R) -> Moved<R> {
+        let (x, v) = (state.position_m, state.velocity_m_per_s);
+        let k = (R::constant(0.5) * h).named("half_step_s");
+        let x_mid = k.mul_add(v, x).named("middle_m");
+        let level_factor = self.level_factor(&mut state.cell, x_mid, t + k);
+        let settled = self.joint.settle(state.joint(), x, v, level_factor);
         (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
         match integrator {
-            Integrator::LinearlyImplicitMidpoint => self.linearly_implicit_midpoint(state, h),
-            Integrator::Rk4 => self.rk4(state, h),
+            Integrator::LinearlyImplicitMidpoint => {
+                let transverse_m_per_s = self.variation.transverse_m_per_s(t + k);
+                let at = At {
+                    position_m: x_mid,
+                    velocity_m_per_s: v,
+                    level_factor,
+                    transverse_m_per_s,
+                    ahead_s: k,
+                };
+                self.linearly_implicit_midpoint(state, &at)
+            }
+            Integrator::Rk4 => self.rk4(state, t, h),
         }
+    }
+
+    /// What the friction levels are multiplied by at position `x` and time `t`.
+    #[inline(always)]
+    fn level_factor(&self, cell: &mut FieldCell<R>, x: R, t: R) -> R {
+        if self.variation.is_none() {
+            return self.factors.friction_level;
+        }
+        self.factors.friction_level * self.variation.factor(cell, x, t)
     }
 
     #[inline(always)]
@@ -187,12 +222,10 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     /// m (v_m − v) / k = F − n R_m is then solved in closed form, stuck or sliding. The prediction
     /// takes the joint force of the step before, and the push that goes with it.
     #[inline(always)]
-    fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, h: R) -> Moved<R> {
+    fn linearly_implicit_midpoint(&self, state: &mut PlantState<R>, begun: &At<R>) -> Moved<R> {
         R::section("prediction: the velocity at the middle of the step, with the last joint force");
-        let v = state.velocity_m_per_s;
-        let k = (R::constant(0.5) * h).named("half_step_s");
+        let (v, k) = (begun.velocity_m_per_s, begun.ahead_s);
         let k_over_m = (k / self.mass_kg).named("k_over_m_s_per_kg");
-        let x_mid = k.mul_add(v, state.position_m).named("middle_m");
         let q = (k_over_m * self.factors.joint_force).named("q_s_per_kg");
         let v_predicted = match self.push.yielding_n_s_per_m.get() {
             Some(_) => {
@@ -205,14 +238,11 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
             }
         }
         .named("predicted_m_per_s");
-        let at = At {
-            position_m: x_mid,
-            velocity_m_per_s: v_predicted,
-            level_factor: self.factors.friction_level,
-            ahead_s: k,
-        };
+        let at = At { velocity_m_per_s: v_predicted, ..*begun };
         let joint = state.joint();
-        let middle = Midpoint { k, k_over_m, q, engaged: self.engaged(x_mid) };
+        let engaged = self.engaged(begun.position_m);
+        let transverse_m_per_s = begun.transverse_m_per_s;
+        let middle = Midpoint { k, k_over_m, q, engaged, transverse_m_per_s };
         self.joint.frozen(&joint, &at, Step { plant: self, state, middle })
     }
 
@@ -241,7 +271,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     ) -> Moved<R> {
         R::section("midpoint: v_m = [g (w - q k_e z) + k A (w + q c/k z)] / den");
         let (v, z) = (state.velocity_m_per_s, state.bristle_m);
-        let &Midpoint { k, k_over_m, q, engaged } = at;
+        let &Midpoint { k, k_over_m, q, engaged, .. } = at;
         let n = self.factors.joint_force;
         let g = b.friction_level_n;
         let c_over_k = (b.damping_n_s_per_m / k).named("damping_n_per_m");
@@ -284,6 +314,11 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let per_force = (per_force * R::constant(2.0)).named("two_per_force_m_per_n");
         let held = (per_force * per_lost).mul_add(lost, kept);
         state.bristle_m = R::select(engaged, held, R::zero()).named("bristle_m");
+        if let Some(&across) = at.transverse_m_per_s.get() {
+            let z = (k * g).mul_add(across, g * state.transverse_bristle_m) / (g + slip);
+            let z = z + z - state.transverse_bristle_m;
+            state.transverse_bristle_m = R::select(engaged, z, R::zero());
+        }
         self.carry(state, k, two_v, lost * per_lost, force_n)
     }
 
@@ -300,7 +335,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         elements: &Elements<'_, R>,
     ) -> Moved<R> {
         let v = state.velocity_m_per_s;
-        let &Midpoint { k, k_over_m, q, engaged } = at;
+        let &Midpoint { k, k_over_m, q, engaged, .. } = at;
         let mut moving = state.elements;
         let ahead = elements.ahead(&mut moving, k);
         R::section("midpoint: v_m = (v + k F/m - q R_0) / (1 + q D)");
@@ -333,7 +368,7 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         rigid: &Rigid<R>,
     ) -> Moved<R> {
         let v = state.velocity_m_per_s;
-        let &Midpoint { k, k_over_m, q, engaged } = at;
+        let &Midpoint { k, k_over_m, q, engaged, .. } = at;
         let (zero, half) = (R::zero(), R::constant(0.5));
         R::section(
             "rigid joint: the force that stops the part within the step, limited to the level",
@@ -381,9 +416,9 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
 
     /// (dx/dt, dv/dt, dz/dt) and the joint force in N, disturbance included.
     #[inline(always)]
-    fn rates(&self, state: &JointState<R>, x: R, v: R, z: R) -> ([R; 3], R) {
+    fn rates(&self, state: &JointState<R>, t: R, [x, v, z]: [R; 3]) -> ([R; 3], R) {
         let state = JointState { bristle_m: z, ..*state };
-        let level = self.factors.friction_level;
+        let level = self.level_factor(&mut FieldCell::nowhere(), x, t);
         let Some(b) = self.joint.freeze(&state, x, v, level) else {
             return ([R::constant(f64::NAN); 3], R::constant(f64::NAN));
         };
@@ -400,13 +435,12 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     }
 
     #[inline(always)]
-    fn rk4(&self, state: &mut PlantState<R>, h: R) -> Moved<R> {
+    fn rk4(&self, state: &mut PlantState<R>, t: R, h: R) -> Moved<R> {
         R::section("Runge-Kutta of order four");
         let joint = state.joint();
         let start = [state.position_m, state.velocity_m_per_s, state.bristle_m];
         let at = |slope: &[R; 3], step: R| {
-            let [x, v, z] = core::array::from_fn(|i| start[i] + step * slope[i]);
-            self.rates(&joint, x, v, z)
+            self.rates(&joint, t + step, core::array::from_fn(|i| start[i] + step * slope[i]))
         };
         let half = R::constant(0.5) * h;
         let (k1, r1) = at(&[R::zero(); 3], R::zero());

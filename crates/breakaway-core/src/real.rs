@@ -14,6 +14,14 @@ pub trait Block {
     fn compute(self) -> Self::Output;
 }
 
+/// A function of several numbers that gives several, written for any numbers.
+///
+/// A type and not a closure, because lanes compute it with what they are made of.
+pub trait Function<const K: usize, const N: usize> {
+    /// Computes it. Has to be inlined.
+    fn of<R: Real>(numbers: [R; K]) -> [R; N];
+}
+
 /// A number that the equations can be computed with.
 ///
 /// The operations are the ones that an export to C reproduces bit for bit: plus, minus, times,
@@ -82,6 +90,23 @@ pub trait Real:
     #[inline(always)]
     fn apart<B: Block>(block: B) -> B::Output {
         block.compute()
+    }
+
+    /// A function of `from` where `needed` holds, what was `kept` elsewhere. Numbers that know whether any
+    /// needs it leave the function out where none does: for what seldom changes. The same bits either
+    /// way.
+    #[inline(always)]
+    fn renewed<F: Function<K, N>, const K: usize, const N: usize>(
+        needed: Self::Mask,
+        kept: [Self; N],
+        from: [Self; K],
+    ) -> [Self; N] {
+        let fresh = F::of(from);
+        let mut out = kept;
+        for i in 0..N {
+            out[i] = Self::select(needed, fresh[i], kept[i]);
+        }
+        out
     }
 
     /// Says what the number is, to numbers that keep it: a recording, whose code shall be read.

@@ -7,6 +7,7 @@ use crate::joint::{DirectionalLugre, JointState};
 use crate::maybe::Maybe;
 use crate::plant::{Integrator, Plant, PlantState, Push};
 use crate::real::Real;
+use crate::variation::Variation;
 
 /// A part on a rig.
 ///
@@ -238,8 +239,14 @@ impl<R: Real> Rig<R> {
             let half = R::constant(0.5) * h;
             let x_mid = half.mul_add(state.plant.velocity_m_per_s, state.plant.position_m);
             let push = Push::rigid(force_n - self.rig_force(x_mid));
-            let plant = Plant { joint: &self.friction, mass_kg: self.mass_kg, push, factors };
-            plant.step(Integrator::LinearlyImplicitMidpoint, &mut state.plant, h);
+            let plant = Plant {
+                joint: &self.friction,
+                mass_kg: self.mass_kg,
+                push,
+                factors,
+                variation: &Variation::none(),
+            };
+            plant.step(Integrator::LinearlyImplicitMidpoint, &mut state.plant, R::zero(), h);
         }
         predicted
     }
@@ -264,7 +271,8 @@ impl<R: Real> Rig<R> {
     fn follow_motion(&self, state: &mut RigState<R>, row: &Row<R>, steps: u32) -> Predicted<R> {
         let (x, v) = (row.position_m, row.velocity_m_per_s);
         let z = state.plant.bristle_m;
-        let joint = JointState { bristle_m: z, sliding: R::zero() };
+        let joint =
+            JointState { bristle_m: z, transverse_bristle_m: R::zero(), sliding: R::zero() };
         let bristle = self.friction.freeze(&joint, x, v, R::one());
         let friction_n = bristle.force(v, z, bristle.rate(v, z));
         let force_n =
@@ -295,7 +303,8 @@ impl<R: Real> Rig<R> {
     #[inline(always)]
     fn carry_bristle(&self, state: &mut PlantState<R>, v: R, h: R) {
         let z = state.bristle_m;
-        let joint = JointState { bristle_m: z, sliding: R::zero() };
+        let joint =
+            JointState { bristle_m: z, transverse_bristle_m: R::zero(), sliding: R::zero() };
         let x_mid = (R::constant(0.5) * h).mul_add(v, state.position_m);
         let b = self.friction.freeze(&joint, x_mid, v, R::one());
         let y = h * b.relaxation() / b.friction_level_n;

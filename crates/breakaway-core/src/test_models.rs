@@ -9,6 +9,7 @@ use crate::maybe::Maybe;
 use crate::metrics::Limits;
 use crate::plant::Integrator;
 use crate::reference::{Motion, Reference};
+use crate::variation::Variation;
 
 /// The joint that the paper's Table II implies: k_e = 3.6e7 N/m and c = 9000 N s/m, the rest from
 /// its Table I.
@@ -45,6 +46,7 @@ pub fn paper_as_computed() -> Extraction<f64> {
             start_s: 0.0,
             duration_s: 0.5,
         }),
+        variation: Variation::none(),
         disturbance: Disturbance {
             law: DrawLaw::Uniform,
             var: 0.0,

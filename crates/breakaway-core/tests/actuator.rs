@@ -13,6 +13,7 @@ use breakaway_core::extraction::Sample;
 use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::plant::{Integrator, Moved, Plant, PlantState};
 use breakaway_core::test_models::{paper_as_computed, paper_joint};
+use breakaway_core::variation::Variation;
 use breakaway_core::{Draws, Extraction, ExtractionState, Maybe};
 use std::f64::consts::PI;
 use support::{UNDISTURBED, random};
@@ -91,8 +92,14 @@ impl Bench {
     ) -> (Moved<f64>, Effort<f64>) {
         let driven = self.actuator.drive(&mut self.state, command, self.part.position_m, h);
         let push = driven.push;
-        let plant = Plant { joint: &self.joint, mass_kg: self.mass_kg, push, factors };
-        let moved = plant.step(Integrator::LinearlyImplicitMidpoint, &mut self.part, h);
+        let plant = Plant {
+            joint: &self.joint,
+            mass_kg: self.mass_kg,
+            push,
+            factors,
+            variation: &Variation::none(),
+        };
+        let moved = plant.step(Integrator::LinearlyImplicitMidpoint, &mut self.part, 0.0, h);
         let (force_n, v) = (moved.push_force_n, moved.mean_velocity_m_per_s);
         (moved, self.actuator.settle(&mut self.state, &driven, force_n, v, h))
     }

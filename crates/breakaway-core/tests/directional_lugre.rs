@@ -7,6 +7,7 @@ use breakaway_core::disturbance::Factors;
 use breakaway_core::imposed::impose_motion;
 use breakaway_core::joint::{Bristle, DirectionalLugre, Joint, JointState, Law, Lugre};
 use breakaway_core::plant::{Integrator, Plant, PlantState, Push};
+use breakaway_core::variation::Variation;
 
 const UNDISTURBED: Factors<f64> = Factors { joint_force: 1.0, friction_level: 1.0 };
 
@@ -63,8 +64,14 @@ fn pushed<L: Law<f64>>(
     let mut state = PlantState::at_rest();
     let step = |n| {
         let push = Push::rigid(force((f64::from(n) + 0.5) * h));
-        let plant = Plant { joint: law, mass_kg: 1.0, push, factors: UNDISTURBED };
-        plant.step(Integrator::LinearlyImplicitMidpoint, &mut state, h);
+        let plant = Plant {
+            joint: law,
+            mass_kg: 1.0,
+            push,
+            factors: UNDISTURBED,
+            variation: &Variation::none(),
+        };
+        plant.step(Integrator::LinearlyImplicitMidpoint, &mut state, 0.0, h);
         state
     };
     (0..steps).map(step).collect()
@@ -102,7 +109,7 @@ fn numbers(b: &Bristle<f64>) -> [f64; 7] {
 #[test]
 fn with_equal_directions_it_has_the_bristle_of_lugre() {
     let (by_direction, joint) = twins();
-    let state = JointState { bristle_m: 5e-6, sliding: 0.0 };
+    let state = JointState { bristle_m: 5e-6, transverse_bristle_m: 0.0, sliding: 0.0 };
     for v in [-1.0, -0.02, -1e-6, 0.0, 1e-6, 0.005, 0.02, 1.0] {
         for (x, factor) in [(-0.1, 1.0), (0.0, 0.8), (0.3, 1.2)] {
             let ours = numbers(&by_direction.freeze(&state, x, v, factor));
@@ -187,7 +194,7 @@ fn the_level_falls_as_the_contact_slope() {
 fn onset(share: f64, used: f64, v: f64) -> f64 {
     let law = bare(Maybe::some(share));
     let g = law.level(0.0, v);
-    let state = JointState { bristle_m: used * g / 1e6, sliding: 0.0 };
+    let state = JointState { bristle_m: used * g / 1e6, transverse_bristle_m: 0.0, sliding: 0.0 };
     law.freeze(&state, 0.0, v, 1.0).relaxation_n_per_m / 1e6
 }
 

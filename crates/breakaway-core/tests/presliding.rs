@@ -24,7 +24,7 @@ fn cycles(law: Lugre<f64>, amplitude_m: f64, frequency_hz: f64, count: usize) ->
     let joint = Joint::Lugre(law);
     let rates = |t: f64, z: f64| {
         let v = amplitude_m * omega * (omega * t).cos();
-        let state = JointState { bristle_m: z, sliding: 0.0 };
+        let state = JointState { bristle_m: z, transverse_bristle_m: 0.0, sliding: 0.0 };
         let bristle = joint.freeze(&state, 0.0, v, 1.0).expect("LuGre has one");
         let rate = bristle.rate(v, z);
         let slip = law.stiffness_n_per_m * z * (v - rate);

@@ -9,6 +9,7 @@ use breakaway_core::disturbance::Factors;
 use breakaway_core::joint::{Joint, Lugre};
 use breakaway_core::plant::{Plant, PlantState, Push};
 use breakaway_core::test_models::paper_joint;
+use breakaway_core::variation::Variation;
 use support::{Rig, UNDISTURBED, random};
 
 /// Whatever the law, the state and the stiffness of the contact: the force agrees with the velocity
@@ -24,9 +25,15 @@ fn the_force_agrees_with_the_motion_that_it_causes() {
             let s = 10.0_f64.powf(3.0 + 3.0 * random(&mut seed));
             let factors = Factors { joint_force: 1.0 + 0.2 * random(&mut seed), ..UNDISTURBED };
             let push = Push { force_n, yielding_n_s_per_m: Maybe::some(s) };
-            let plant = Plant { joint: &rig.joint, mass_kg: 1.0, push, factors };
+            let plant = Plant {
+                joint: &rig.joint,
+                mass_kg: 1.0,
+                push,
+                factors,
+                variation: &Variation::none(),
+            };
             let before = rig.state.velocity_m_per_s;
-            let moved = plant.step(rig.integrator, &mut rig.state, h);
+            let moved = plant.step(rig.integrator, &mut rig.state, 0.0, h);
             let (f, v_m) = (moved.push_force_n, moved.mean_velocity_m_per_s);
             let scale = force_n.abs() + s * v_m.abs();
             assert!((f - (force_n - s * v_m).max(0.0)).abs() <= 1e-9 * scale, "{name} at {n}: {f}");

@@ -9,7 +9,7 @@ use breakaway_core::test_models::paper_joint;
 /// The joint force after the bristle has settled at velocity `v` and position `x`: the bristle
 /// equation (2) integrated by a Runge-Kutta method of order four for 50 of its time constants.
 fn settled_force(law: Lugre<f64>, x: f64, v: f64) -> f64 {
-    let state = JointState { bristle_m: 0.0, sliding: 0.0 };
+    let state = JointState { bristle_m: 0.0, transverse_bristle_m: 0.0, sliding: 0.0 };
     let joint = Joint::Lugre(law);
     let bristle = joint.freeze(&state, x, v, 1.0).expect("LuGre has one");
     let h = 0.1 * bristle.friction_level_n / bristle.relaxation();

@@ -110,18 +110,23 @@ pub fn control<R: Real>(
     [force_n, feed_m_per_s, stack_share, state.watch.reason, setpoint.position_m]
 }
 
-/// What begins a period of the plant: the command that takes effect, and the disturbance.
+/// What begins a period of the plant: the command that takes effect, the disturbance, and the time,
+/// which runs where the joint varies with it.
 pub fn begin<R: Real>(
     extraction: &Extraction<R>,
     state: &mut ExtractionState<R>,
     command: [R; 3],
     draw: R,
-) -> (Command<R>, Factors<R>) {
+) -> (Command<R>, Factors<R>, R) {
     let [force_n, feed_m_per_s, stack_share] = command;
     R::section("command and disturbance");
     let decided = Command { force_n, feed_m_per_s, stack_share };
     let command = extraction.delay(&mut state.sampling, decided);
-    (command, factors(extraction, draw))
+    let time_s = state.sampling.samples * extraction.timing.control_period_s;
+    if extraction.variation.reads_time() {
+        state.sampling.samples = state.sampling.samples + R::one();
+    }
+    (command, factors(extraction, draw), time_s)
 }
 
 /// The disturbance of a period.
@@ -156,13 +161,13 @@ pub fn show<R: Real>(
     ]
 }
 
-/// What begins a period of the loop: measure, decide, delay, disturb. Gives reference and
+/// What begins a period of the loop: measure, decide, delay, disturb. Gives the time, reference and
 /// stop reason, too.
 pub fn begin_loop<R: Real>(
     extraction: &Extraction<R>,
     state: &mut ExtractionState<R>,
     draws: Draws<R>,
-) -> (Command<R>, Factors<R>, [R; 2]) {
+) -> (Command<R>, Factors<R>, R, [R; 2]) {
     R::section("reference");
     let setpoint = extraction.next_setpoint(&mut state.sampling);
     R::section("sensors");
@@ -171,5 +176,5 @@ pub fn begin_loop<R: Real>(
     R::section("command and disturbance");
     let command = extraction.delay(&mut state.sampling, decided);
     let outputs = [setpoint.position_m, state.watch.reason];
-    (command, factors(extraction, draws.disturbance), outputs)
+    (command, factors(extraction, draws.disturbance), setpoint.time_s, outputs)
 }

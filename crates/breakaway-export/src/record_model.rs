@@ -82,8 +82,8 @@ impl Model<'_> {
         self.routine("move", 1, |recorder, extraction, state| {
             let commanded = inputs(recorder, What::Plant);
             let draw = recorder.input("signal/draw");
-            let (command, factors) = model::begin(extraction, state, commanded, draw);
-            let period = extraction.move_once(state, &command, &factors, extraction.step_s());
+            let (command, factors, time_s) = model::begin(extraction, state, commanded, draw);
+            let period = extraction.move_once(state, &command, &factors, time_s);
             let forces = model::end(state, &period);
             outputs(recorder, &FORCES, &forces);
         })
@@ -93,8 +93,8 @@ impl Model<'_> {
         self.routine("begin", 1, |recorder, extraction, state| {
             let commanded = inputs(recorder, What::Plant);
             let draw = recorder.input("signal/draw");
-            let (command, factors) = model::begin(extraction, state, commanded, draw);
-            hand_over(recorder, &command, &factors);
+            let (command, factors, time_s) = model::begin(extraction, state, commanded, draw);
+            hand_over(recorder, &command, &factors, time_s);
         })
     }
 
@@ -108,7 +108,11 @@ impl Model<'_> {
                 friction_level: recorder.input("signal/factor.friction_level"),
             };
             let sum = Period::<f64>::none().map(&mut of(recorder, "sum"));
-            let step = extraction.move_once(state, &command, &factors, extraction.step_s());
+            let time_s = recorder.input("signal/time_s");
+            let step = extraction.move_once(state, &command, &factors, time_s);
+            if extraction.variation.reads_time() {
+                recorder.output("signal/time_s", time_s + extraction.step_s());
+            }
             Expr::section("sums over the steps of a period");
             sum.and(&step).map(&mut to(recorder, "sum"));
         })
@@ -133,16 +137,16 @@ impl Model<'_> {
 
     fn loop_at_once(&self) -> Routine {
         self.routine("compute", 1, |recorder, extraction, state| {
-            let (command, factors) = begin_loop(recorder, extraction, state);
-            let period = extraction.move_once(state, &command, &factors, extraction.step_s());
+            let (command, factors, time_s) = begin_loop(recorder, extraction, state);
+            let period = extraction.move_once(state, &command, &factors, time_s);
             end_loop(recorder, state, &period);
         })
     }
 
     fn loop_begins(&self) -> Routine {
         self.routine("begin", 1, |recorder, extraction, state| {
-            let (command, factors) = begin_loop(recorder, extraction, state);
-            hand_over(recorder, &command, &factors);
+            let (command, factors, time_s) = begin_loop(recorder, extraction, state);
+            hand_over(recorder, &command, &factors, time_s);
         })
     }
 
@@ -186,7 +190,13 @@ fn to(recorder: &mut Recorder, group: &str) -> impl FnMut(Name<'_>, Expr) {
 }
 
 /// Gives what the integration steps need to signals.
-fn hand_over(recorder: &mut Recorder, command: &Command<Expr>, factors: &Factors<Expr>) {
+fn hand_over(
+    recorder: &mut Recorder,
+    command: &Command<Expr>,
+    factors: &Factors<Expr>,
+    time_s: Expr,
+) {
+    recorder.output("signal/time_s", time_s);
     command.map(&mut to(recorder, "command"));
     recorder.output("signal/factor.joint_force", factors.joint_force);
     recorder.output("signal/factor.friction_level", factors.friction_level);
@@ -197,14 +207,14 @@ fn begin_loop(
     recorder: &mut Recorder,
     extraction: &Extraction<Expr>,
     state: &mut ExtractionState<Expr>,
-) -> (Command<Expr>, Factors<Expr>) {
+) -> (Command<Expr>, Factors<Expr>, Expr) {
     let draws = Draws { disturbance: recorder.input("signal/draw"), noise: noise(recorder) };
-    let (command, factors, [reference_m, stop_reason]) =
+    let (command, factors, time_s, [reference_m, stop_reason]) =
         model::begin_loop(extraction, state, draws);
     let Command { force_n, feed_m_per_s, stack_share } = command;
     let numbers = [reference_m, force_n, feed_m_per_s, stack_share, stop_reason];
     outputs(recorder, &What::Loop.outputs()[..5], &numbers);
-    (command, factors)
+    (command, factors, time_s)
 }
 
 fn end_loop(recorder: &mut Recorder, state: &mut ExtractionState<Expr>, period: &Period<Expr>) {

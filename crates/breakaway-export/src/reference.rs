@@ -1,7 +1,7 @@
 //! What exported code has to give: the core's own step in the same numbers.
 
 use breakaway_batch::HeldDraws;
-use breakaway_batch::draws::noise;
+use breakaway_batch::draws::{field_keys, noise};
 use breakaway_core::sensor::Noise;
 use breakaway_core::{Draws, Extraction, ExtractionState};
 
@@ -54,6 +54,10 @@ struct Rig<R> {
 
 impl<R: Scalar> Rig<R> {
     fn new(extraction: &Extraction<f64>, draws: Seeded) -> Self {
+        let mut extraction = *extraction;
+        if let Some(field) = &mut extraction.variation.field {
+            field.keys = field_keys(draws.seed, draws.run);
+        }
         let extraction = extraction.map(&mut |_, value| R::constant(value));
         // Draws are made in double precision, from the numbers as they are in `R`.
         let disturbance = extraction.disturbance.map(&mut |_, value: R| value.into());
@@ -98,8 +102,8 @@ impl<R: Scalar> Rig<R> {
     fn plant(&mut self, sample: u64, commanded: [R; 3]) -> Vec<R> {
         let draw = self.draw(sample);
         let state = &mut self.state;
-        let (command, factors) = model::begin(&self.extraction, state, commanded, draw);
-        let period = self.extraction.move_plant(state, &command, &factors);
+        let (command, factors, time_s) = model::begin(&self.extraction, state, commanded, draw);
+        let period = self.extraction.move_plant(state, &command, &factors, time_s);
         let forces = model::end(state, &period);
         [&self.show(sample + 1)[..], &forces].concat()
     }
@@ -107,7 +111,7 @@ impl<R: Scalar> Rig<R> {
     fn looped(&mut self, sample: u64) -> Vec<R> {
         let draws = Draws { disturbance: self.draw(sample), noise: self.noise(sample) };
         // A sample does not tell the whole command: it is decided once more, on a copy.
-        let (command, _, _) = model::begin_loop(&self.extraction, &mut self.state.clone(), draws);
+        let (command, ..) = model::begin_loop(&self.extraction, &mut self.state.clone(), draws);
         let sample = self.extraction.step(&mut self.state, draws);
         let plant = &self.state.plant;
         let moved = [

@@ -3,6 +3,7 @@
 mod bytes;
 mod error;
 mod export;
+mod field;
 mod job;
 mod law;
 mod many;
@@ -54,6 +55,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(many::fractions, module)?)?;
     module.add_function(wrap_pyfunction!(export::export_code, module)?)?;
     module.add_function(wrap_pyfunction!(export::export_reference, module)?)?;
+    module.add_function(wrap_pyfunction!(field::friction_field, module)?)?;
     module.add_function(wrap_pyfunction!(law::impose, module)?)?;
     module.add_function(wrap_pyfunction!(law::breakaway_force, module)?)?;
     module.add_function(wrap_pyfunction!(law::steady_friction, module)?)?;

@@ -66,6 +66,7 @@ UNITS = {
     "n_per_m_s": Unit("N/(m s)", {"kg": 1, "s": -3}),
     "n_s_per_m": Unit("N s/m", {"kg": 1, "s": -1}),
     "n_per_m": Unit("N/m", {"kg": 1, "s": -2}),
+    "n_per_k": Unit("N/K", {"kg": 1, "m": 1, "s": -2, "K": -1}),
     "n_per_s": Unit("N/s", {"kg": 1, "m": 1, "s": -3}),
     "m_per_s2": Unit("m/s^2", {"m": 1, "s": -2}, _SMALL),
     "rad_per_s": Unit("rad/s", {"rad": 1, "s": -1}, _AS_IT_IS),
@@ -75,6 +76,7 @@ UNITS = {
     "m_s2": Unit("m s^2", {"m": 1, "s": 2}, _SMALL),
     "n_s": Unit("N s", {"kg": 1, "m": 1, "s": -1}),
     "m_s": Unit("m s", {"m": 1, "s": 1}, _SMALL),
+    "m2": Unit("m^2", {"m": 2}, _AS_IT_IS),
     "percent": Unit("%", powers=_AS_IT_IS),
     "degc": Unit("degC", {"K": 1}, _AS_IT_IS),
     "kg": Unit("kg", {"kg": 1}, _AS_IT_IS),
@@ -86,6 +88,7 @@ UNITS = {
     "j": Unit("J", {"kg": 1, "m": 2, "s": -2}),
     "w": Unit("W", {"kg": 1, "m": 2, "s": -3}),
     "v": Unit("V", {"kg": 1, "m": 2, "s": -3, "A": -1}),
+    "k": Unit("K", {"K": 1}, _AS_IT_IS),
     "a": Unit("A", {"A": 1}),
     "f": Unit("F", {"kg": -1, "m": -2, "s": 4, "A": 2}),
 }

@@ -70,7 +70,7 @@ def resolve(scenario: Scenario) -> Scenario:
     )
     return scenario.model_copy(
         update={
-            "joint": with_residual(joint, scenario.part.mass_kg),
+            "joint": _with_nominal(with_residual(joint, scenario.part.mass_kg)),
             "limits": explicit_limits,
             "controller": with_gains(scenario),
         }
@@ -133,10 +133,7 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
     for pid in _pid_tables(controller):
         del pid["gains"]["kind"]
         leave_out_zero(pid, "derivative_filter_s")
-    disturbance = values["disturbance"]
-    law = {"kind": disturbance.pop("law")}
-    if "bandwidth_hz" in disturbance:
-        law["bandwidth_hz"] = disturbance.pop("bandwidth_hz")
+    field, random_factor = _field_and_random_factor(values["disturbance"], timing)
     del timing["duration_s"]
     release_position_m = resolved.joint.engagement_length_m - limits.pop("release_tolerance_m")
     return {
@@ -144,7 +141,12 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
             "joint": joint,
             "part": values["part"],
             "reference": values["reference"],
-            "disturbance": {"law": law, **disturbance},
+            "variation": {
+                "field": field,
+                "drift": resolved.joint.drift and resolved.joint.drift.core(),
+                "normal_force": _core_normal_force(resolved.joint),
+            },
+            "disturbance": random_factor,
             "actuator": values["actuator"],
             "sensors": values["sensors"],
             "watch": values["watch"],
@@ -158,6 +160,48 @@ def core_job(resolved: Scenario, run: int) -> dict[str, Any]:
         "run": run,
         "trace_every": resolved.trace.every_samples,
     }
+
+
+def _field_and_random_factor(
+    disturbance: dict[str, Any], timing: dict[str, Any]
+) -> tuple[dict[str, Any] | None, dict[str, Any]]:
+    """Give both kinds of disturbance under the names of the core; a scenario has one of them.
+
+    The core draws the keys of a field.
+    """
+    if disturbance.pop("kind") == "field":
+        keys = {"first": 0.0, "second": 0.0, "offset": 0.0}
+        still = {"law": {"kind": "uniform"}, "var": 0.0, "acts_on": "friction_level"}
+        return disturbance | {"keys": keys}, still | {"hold_s": timing["control_period_s"]}
+    law = {"kind": disturbance.pop("law")}
+    if "bandwidth_hz" in disturbance:
+        law["bandwidth_hz"] = disturbance.pop("bandwidth_hz")
+    return None, {"law": law, **disturbance}
+
+
+def _core_normal_force(joint: AnyJoint) -> dict[str, Any] | None:
+    """Give the normal force of a resolved joint under the names of the core."""
+    normal = joint.normal_force
+    if normal is None:
+        return None
+    vibrations = {name: getattr(normal, name) for name in ("vibration", "transverse")}
+    dumped = {name: v and v.model_dump(warnings=False) for name, v in vibrations.items()}
+    return {"nominal_n": normal.nominal_n, **normal.core_source(), **dumped}
+
+
+def _with_nominal(joint: AnyJoint) -> AnyJoint:
+    """Say at which normal force the joint's levels hold: where it is not said, at the first."""
+    normal = joint.normal_force
+    if normal is None or normal.nominal_n is not None:
+        return joint
+    nominal_n = normal.start_n()
+    if not np.all(nominal_n > 0.0):
+        raise ScenarioError(
+            f"joint.normal_force.nominal_n: is left out, and the force at the start is {nominal_n!r} "
+            "N, at which no friction levels can hold; give the force at which they hold, in N"
+        )
+    stated = normal.model_copy(update={"nominal_n": nominal_n})
+    return joint.model_copy(update={"normal_force": stated})
 
 
 def _name_as_the_core(values: dict[str, Any]) -> None:

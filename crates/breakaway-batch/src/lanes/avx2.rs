@@ -10,15 +10,15 @@
 use core::arch::x86_64::{
     __m256d, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd,
     _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_div_pd,
-    _mm256_fmadd_pd, _mm256_loadu_pd, _mm256_max_pd, _mm256_min_pd, _mm256_mul_pd, _mm256_or_pd,
-    _mm256_set1_epi64x, _mm256_set1_pd, _mm256_slli_epi64, _mm256_storeu_pd, _mm256_sub_pd,
-    _mm256_xor_pd,
+    _mm256_fmadd_pd, _mm256_loadu_pd, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd,
+    _mm256_mul_pd, _mm256_or_pd, _mm256_set1_epi64x, _mm256_set1_pd, _mm256_slli_epi64,
+    _mm256_storeu_pd, _mm256_sub_pd, _mm256_xor_pd,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use breakaway_core::Real;
 use breakaway_core::exp2::exp2_parts_in_double;
-use breakaway_core::real::Block;
+use breakaway_core::real::{Block, Function};
 
 use super::Wide;
 
@@ -78,6 +78,14 @@ unsafe fn apart<B: Block>(block: B) -> B::Output {
     block.compute()
 }
 
+/// A function where some lane needs it.
+#[target_feature(enable = "avx2,fma")]
+#[cold]
+#[inline(never)]
+unsafe fn fresh<F: Function<K, N>, const K: usize, const N: usize>(from: [Four; K]) -> [Four; N] {
+    F::of(from)
+}
+
 impl Real for Four {
     type Mask = FourMask;
 
@@ -85,6 +93,23 @@ impl Real for Four {
     fn apart<B: Block>(block: B) -> B::Output {
         // SAFETY: these numbers are only computed with where the processor has the instructions.
         unsafe { apart(block) }
+    }
+
+    #[inline(always)]
+    fn renewed<F: Function<K, N>, const K: usize, const N: usize>(
+        needed: Self::Mask,
+        kept: [Self; N],
+        from: [Self; K],
+    ) -> [Self; N] {
+        let mut out = kept;
+        if unsafe { _mm256_movemask_pd(needed.0) } != 0 {
+            // SAFETY: these numbers are only computed with where the processor has the instructions.
+            let fresh = unsafe { fresh::<F, K, N>(from) };
+            for i in 0..N {
+                out[i] = Self::select(needed, fresh[i], kept[i]);
+            }
+        }
+        out
     }
 
     #[inline(always)]

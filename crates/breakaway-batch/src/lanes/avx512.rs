@@ -18,7 +18,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use breakaway_core::Real;
 use breakaway_core::exp2::exp2_parts_in_double;
-use breakaway_core::real::Block;
+use breakaway_core::real::{Block, Function};
 
 use super::Wide;
 
@@ -94,6 +94,14 @@ unsafe fn apart<B: Block>(block: B) -> B::Output {
     block.compute()
 }
 
+/// A function where some lane needs it.
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+#[cold]
+#[inline(never)]
+unsafe fn fresh<F: Function<K, N>, const K: usize, const N: usize>(from: [Eight; K]) -> [Eight; N] {
+    F::of(from)
+}
+
 impl Real for Eight {
     type Mask = EightMask;
 
@@ -101,6 +109,23 @@ impl Real for Eight {
     fn apart<B: Block>(block: B) -> B::Output {
         // SAFETY: these numbers are only computed with where the processor has the instructions.
         unsafe { apart(block) }
+    }
+
+    #[inline(always)]
+    fn renewed<F: Function<K, N>, const K: usize, const N: usize>(
+        needed: Self::Mask,
+        kept: [Self; N],
+        from: [Self; K],
+    ) -> [Self; N] {
+        let mut out = kept;
+        if needed.0 != 0 {
+            // SAFETY: these numbers are only computed with where the processor has the instructions.
+            let fresh = unsafe { fresh::<F, K, N>(from) };
+            for i in 0..N {
+                out[i] = Self::select(needed, fresh[i], kept[i]);
+            }
+        }
+        out
     }
 
     #[inline(always)]

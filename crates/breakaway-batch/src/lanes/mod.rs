@@ -11,7 +11,7 @@ pub(crate) mod avx512;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use breakaway_core::Real;
-use breakaway_core::real::Block;
+use breakaway_core::real::{Block, Function};
 
 /// Defines several numbers, or vectors of numbers, that go through the same step together.
 ///
@@ -60,6 +60,25 @@ macro_rules! lanes {
             #[inline(always)]
             fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
                 Self([$(V::select(mask.0[$i], yes.0[$i], no.0[$i])),+])
+            }
+            #[inline(always)]
+            fn renewed<F: Function<K, N>, const K: usize, const N: usize>(
+                needed: Self::Mask,
+                kept: [Self; N],
+                from: [Self; K],
+            ) -> [Self; N] {
+                let mut out = kept;
+                $(
+                    let one = V::renewed::<F, K, N>(
+                        needed.0[$i],
+                        std::array::from_fn(|n| kept[n].0[$i]),
+                        std::array::from_fn(|k| from[k].0[$i]),
+                    );
+                    for n in 0..N {
+                        out[n].0[$i] = one[n];
+                    }
+                )+
+                out
             }
             #[inline(always)]
             fn abs(self) -> Self {

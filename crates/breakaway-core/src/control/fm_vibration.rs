@@ -3,6 +3,7 @@
 use super::Measurement;
 use crate::name::Name;
 use crate::real::Real;
+use crate::sine::half_sine;
 use crate::states::states;
 
 /// The course of the force during a pulse, from 0 to 1 and back.
@@ -110,30 +111,6 @@ impl<R: Real> FmVibration<R> {
     }
 }
 
-/// sin(π u) for 0 ≤ u ≤ 1, as the cosine's series in π (u − ½); error below 1e-14.
-#[inline(always)]
-pub(super) fn half_sine<R: Real>(u: R) -> R {
-    const COSINE: [f64; 10] = [
-        1.0,
-        -1.0 / 2.0,
-        1.0 / 24.0,
-        -1.0 / 720.0,
-        1.0 / 40_320.0,
-        -1.0 / 3_628_800.0,
-        1.0 / 479_001_600.0,
-        -1.0 / 87_178_291_200.0,
-        1.0 / 20_922_789_888_000.0,
-        -1.0 / 6_402_373_705_728_000.0,
-    ];
-    let y = R::constant(core::f64::consts::PI) * (u - R::constant(0.5));
-    let square = (y * y).named("angle_squared");
-    let mut sum = R::constant(COSINE[9]);
-    for &coefficient in COSINE[..9].iter().rev() {
-        sum = sum * square + R::constant(coefficient);
-    }
-    sum.named("half_sine")
-}
-
 #[cfg(test)]
 mod tests {
     extern crate std;
@@ -179,14 +156,6 @@ mod tests {
         }
         assert!(widths.len() > 80);
         assert!(widths.iter().all(|&width| width == 100), "{widths:?}");
-    }
-
-    #[test]
-    fn half_sine_is_the_sine() {
-        for i in 0..=1000 {
-            let u = f64::from(i) * 1e-3;
-            assert!((half_sine(u) - (core::f64::consts::PI * u).sin()).abs() < 1e-14);
-        }
     }
 
     #[test]

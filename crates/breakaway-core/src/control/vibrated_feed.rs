@@ -1,11 +1,11 @@
 //! A steady feed helped by a vibrating stack.
 
-use super::fm_vibration::half_sine;
 use super::{Control, Measurement, SteadyFeed, SteadyFeedState};
 use crate::actuator::Command;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
 use crate::real::Real;
+use crate::sine::half_sine;
 use crate::states::states;
 
 /// A constant feed, on which a piezo stack superimposes pulses in proportion to the measured force.

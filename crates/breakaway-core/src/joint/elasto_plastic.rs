@@ -6,6 +6,7 @@ use super::lugre::Lugre;
 use super::onset::slip_onset;
 use crate::name::Name;
 use crate::real::Real;
+use crate::variation::hypotenuse;
 
 /// LuGre friction whose bristle gives back all of its first stretch.
 ///
@@ -44,12 +45,29 @@ impl<R: Real> ElastoPlastic<R> {
     /// of its linear equation with the α of now, solved implicitly. With the α of now alone a step
     /// would be of first order.
     #[inline(always)]
-    fn bristle(&self, z: R, at: &At<R>) -> Bristle<R> {
-        let (v, k) = (at.velocity_m_per_s, at.ahead_s);
-        let bristle = self.yielding(self.friction.bristle(at), z, v);
+    fn bristle(&self, state: &JointState<R>, at: &At<R>) -> Bristle<R> {
+        let (z, v, k) = (state.bristle_m, at.velocity_m_per_s, at.ahead_s);
+        let Some(&across) = at.transverse_m_per_s.get() else {
+            let bristle = self.yielding(self.friction.bristle(at), z, v);
+            let g = bristle.friction_level_n;
+            let z_ahead =
+                (g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g)).named("ahead_m");
+            return self.yielding(bristle, z_ahead, v);
+        };
+        let (z, v) = ([z, state.transverse_bristle_m], [v, across]);
+        let bristle = self.yielding_in_plane(self.friction.bristle(at), z, v);
         let g = bristle.friction_level_n;
-        let z_ahead = (g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g)).named("ahead_m");
-        self.yielding(bristle, z_ahead, v)
+        let kept = g / k.mul_add(bristle.relaxation(), g);
+        let ahead = [k.mul_add(v[0], z[0]) * kept, k.mul_add(v[1], z[1]) * kept];
+        self.yielding_in_plane(bristle, ahead, v)
+    }
+
+    /// As along the motion, but |z| and z v are those of vectors.
+    #[inline(always)]
+    fn yielding_in_plane(&self, bristle: Bristle<R>, z: [R; 2], v: [R; 2]) -> Bristle<R> {
+        let (larger, smaller) = (z[0].abs().max(z[1].abs()), z[0].abs().min(z[1].abs()));
+        let along = z[0].mul_add(v[0], z[1] * v[1]);
+        self.yielding(bristle, hypotenuse(larger, smaller), along)
     }
 
     #[inline(always)]
@@ -83,6 +101,6 @@ impl<R: Real> Law<R> for ElastoPlastic<R> {
 
     #[inline(always)]
     fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
-        then.bristle(&self.bristle(state.bristle_m, at))
+        then.bristle(&self.bristle(state, at))
     }
 }

@@ -13,6 +13,8 @@ pub struct At<R> {
     pub velocity_m_per_s: R,
     /// Factor on the friction level.
     pub level_factor: R,
+    /// v_y in m/s, across the motion, where something vibrates there.
+    pub transverse_m_per_s: Maybe<R>,
     /// How far ahead of the state this is, s: half a step, or nothing.
     pub ahead_s: R,
 }
@@ -76,7 +78,7 @@ pub struct Rigid<R> {
 pub struct Bristle<R> {
     /// α, the share of the motion that stretches the bristle: 1 while it can stretch, else 0.
     pub stretch: R,
-    /// |v| in m/s.
+    /// |v| in m/s, with what goes across the motion.
     pub speed_m_per_s: R,
     /// A / |v| in N/m: k_e for LuGre, 0 for an elastic bristle.
     pub relaxation_n_per_m: R,
@@ -119,6 +121,8 @@ impl<R: Real> Bristle<R> {
 pub struct JointState<R> {
     /// z in m.
     pub bristle_m: R,
+    /// z_y in m, across the motion; zero where nothing vibrates there.
+    pub transverse_bristle_m: R,
     /// 1 while a two-region or rigid law slides, else 0. Laws without such an event leave it alone.
     pub sliding: R,
 }

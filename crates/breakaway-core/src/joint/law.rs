@@ -2,6 +2,7 @@
 
 use super::elements::ElementState;
 use super::frozen::{At, Bristle, Frozen, JointState, OneBristle};
+use crate::maybe::Maybe;
 use crate::real::Real;
 
 /// A friction law. Those of a part in its joint are in [`super::Joint`]; a rig's friction
@@ -40,8 +41,9 @@ pub trait Law<R: Real> {
     /// multiplied by `level_factor`; none for a law of several elements, or without bristles.
     #[inline(always)]
     fn freeze(&self, state: &JointState<R>, x: R, v: R, level_factor: R) -> Option<Bristle<R>> {
-        let ahead_s = R::zero();
-        let at = At { position_m: x, velocity_m_per_s: v, level_factor, ahead_s };
+        let (ahead_s, transverse_m_per_s) = (R::zero(), Maybe::none());
+        let at =
+            At { position_m: x, velocity_m_per_s: v, level_factor, transverse_m_per_s, ahead_s };
         self.frozen(state, &at, OneBristle)
     }
 }

@@ -8,6 +8,7 @@ use super::law::Law;
 use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
+use crate::variation::speed;
 
 /// Modified LuGre friction, equations (1) to (8).
 ///
@@ -108,13 +109,18 @@ impl<R: Real> Lugre<R> {
         }
     }
 
-    /// The bristle with velocity and position frozen.
+    /// The bristle with velocity and position frozen. Where something vibrates across the motion, slip and
+    /// level go with the speed of both: in the plane ż = v − k_e |v| / g(|v|) z, a vector equation.
     #[inline(always)]
     pub(super) fn bristle(&self, at: &At<R>) -> Bristle<R> {
-        let v = at.velocity_m_per_s;
+        let speed = speed(at.velocity_m_per_s, at.transverse_m_per_s);
+        let v = match at.transverse_m_per_s.get() {
+            Some(_) => R::select(at.velocity_m_per_s.lt(R::zero()), -speed, speed),
+            None => at.velocity_m_per_s,
+        };
         Bristle {
             stretch: R::one(),
-            speed_m_per_s: v.abs(),
+            speed_m_per_s: speed,
             relaxation_n_per_m: self.stiffness_n_per_m,
             friction_level_n: self.friction_level(at.position_m, v, at.level_factor),
             stiffness_n_per_m: self.stiffness_n_per_m,

@@ -3,6 +3,7 @@
 use super::elements::Elements;
 use super::frozen::{At, Bristle, Frozen, JointState, Rigid};
 use super::law::Law;
+use crate::maybe::Maybe;
 use crate::real::Real;
 
 /// Friction at a steady velocity, and how it follows when the velocity changes a little.
@@ -54,8 +55,14 @@ pub fn steady<R: Real>(joint: &impl Law<R>, x: R, v: R) -> Steady<R> {
     let one = R::one();
     let level_n = joint.friction_level(x, v, one);
     let bristle_m = v.sign() * level_n / joint.stiffness_n_per_m();
-    let state = JointState { bristle_m, sliding: one };
-    let at = At { position_m: x, velocity_m_per_s: v, level_factor: one, ahead_s: R::zero() };
+    let state = JointState { bristle_m, transverse_bristle_m: R::zero(), sliding: one };
+    let at = At {
+        position_m: x,
+        velocity_m_per_s: v,
+        level_factor: one,
+        transverse_m_per_s: Maybe::none(),
+        ahead_s: R::zero(),
+    };
     joint.frozen(&state, &at, Settled { level_n })
 }
 
@@ -125,8 +132,14 @@ pub enum Form {
 /// ```
 pub fn form<R: Real>(joint: &impl Law<R>) -> Form {
     let (zero, one) = (R::zero(), R::one());
-    let state = JointState { bristle_m: zero, sliding: zero };
-    let at = At { position_m: zero, velocity_m_per_s: zero, level_factor: one, ahead_s: zero };
+    let state = JointState { bristle_m: zero, transverse_bristle_m: zero, sliding: zero };
+    let at = At {
+        position_m: zero,
+        velocity_m_per_s: zero,
+        level_factor: one,
+        transverse_m_per_s: Maybe::none(),
+        ahead_s: zero,
+    };
     joint.frozen(&state, &at, Asked)
 }
 

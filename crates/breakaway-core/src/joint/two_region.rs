@@ -102,6 +102,7 @@ impl<R: Real> Law<R> for TwoRegion<R> {
         let slip_deflection = direction * self.coulomb(x) * level_factor / self.stiffness_n_per_m;
         let slip_deflection = slip_deflection.named("slip_deflection_m");
         JointState {
+            transverse_bristle_m: state.transverse_bristle_m,
             bristle_m: R::select(
                 engaged,
                 R::select(sliding, slip_deflection, state.bristle_m),

@@ -4,6 +4,7 @@
 use breakaway_core::disturbance::Factors;
 use breakaway_core::joint::Joint;
 use breakaway_core::plant::{Integrator, Moved, Plant, PlantState, Push};
+use breakaway_core::variation::Variation;
 
 /// No disturbance.
 pub(crate) const UNDISTURBED: Factors<f64> = Factors { joint_force: 1.0, friction_level: 1.0 };
@@ -30,14 +31,26 @@ impl Rig {
     /// Applies a force for `h` seconds under a disturbance; gives the joint force.
     pub(crate) fn push_disturbed(&mut self, force_n: f64, h: f64, factors: Factors<f64>) -> f64 {
         let push = Push::rigid(force_n);
-        let plant = Plant { joint: &self.joint, mass_kg: 1.0, push, factors };
-        plant.step(self.integrator, &mut self.state, h).joint_force_n
+        let plant = Plant {
+            joint: &self.joint,
+            mass_kg: 1.0,
+            push,
+            factors,
+            variation: &Variation::none(),
+        };
+        plant.step(self.integrator, &mut self.state, 0.0, h).joint_force_n
     }
 
     /// Pushes for `h` seconds.
     pub(crate) fn moved(&mut self, push: Push<f64>, h: f64) -> Moved<f64> {
-        let plant = Plant { joint: &self.joint, mass_kg: 1.0, push, factors: UNDISTURBED };
-        plant.step(self.integrator, &mut self.state, h)
+        let plant = Plant {
+            joint: &self.joint,
+            mass_kg: 1.0,
+            push,
+            factors: UNDISTURBED,
+            variation: &Variation::none(),
+        };
+        plant.step(self.integrator, &mut self.state, 0.0, h)
     }
 
     /// Applies a force for a time, in steps of 10 us; gives the last joint force.

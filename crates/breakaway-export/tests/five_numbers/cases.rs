@@ -17,6 +17,10 @@ use breakaway_core::metrics::{Groups, Limits};
 use breakaway_core::plant::Integrator;
 use breakaway_core::reference::{Motion, Reference, Step, Trapezoid};
 use breakaway_core::sensor::{Noise, Sensor, Sensors};
+use breakaway_core::variation::{
+    Course, Field, FieldKeys, FieldLaw, NormalForce, NormalVibration, Over, TransverseVibration,
+    Variation,
+};
 use breakaway_core::{Draws, Extraction, ExtractionState, Maybe, Metrics, Name, Real};
 
 /// Samples that each case is run for.
@@ -208,6 +212,7 @@ pub(crate) fn all() -> Vec<Case> {
                                 joint,
                                 part,
                                 reference,
+                                variation: Variation::none(),
                                 disturbance,
                                 actuator,
                                 sensors: None,
@@ -378,6 +383,61 @@ fn one_joint_of_each_law() -> Vec<Joint<f64>> {
     joints
 }
 
+/// [`all`], and what single precision cannot hold: friction that varies along the way; with it,
+/// friction that drifts, and follows a normal force that shakes.
+pub(crate) fn in_double() -> Vec<Case> {
+    let mut cases = all();
+    let base = cases[0].extraction;
+    let mut joints = one_joint_of_each_law();
+    joints.push(Joint::Lugre(lugre()));
+    for (i, variation) in variations().into_iter().enumerate() {
+        for (j, &joint) in joints.iter().enumerate() {
+            let steps_per_period = [1, 3][(i + j) % 2];
+            let timing = Timing { steps_per_period, ..base.timing };
+            let extraction = Extraction { joint, variation, timing, ..base };
+            cases.push(Case { name: format!("{extraction:?}"), extraction });
+        }
+    }
+    cases
+}
+
+fn variations() -> Vec<Variation<f64>> {
+    let (mut at, mut values) = ([0.0; 8], [0.0; 8]);
+    (at[1], at[2]) = (1e-3, 4e-3);
+    (values[0], values[1], values[2]) = (1.0, 0.9, 1.1);
+    let drift = Course { over: Over::Time, points: 3, at, values };
+    let (mut at, mut values) = ([0.0; 8], [0.0; 8]);
+    (at[1], values[1]) = (LENGTH_M, -400.0);
+    let course = Course { over: Over::Travel, points: 2, at, values };
+    let vibration = NormalVibration {
+        amplitude_m: 2e-6,
+        stiffness_n_per_m: 1e8,
+        frequency_hz: 900.0,
+        phase_turns: 0.2,
+    };
+    let transverse =
+        TransverseVibration { amplitude_m: 5e-6, frequency_hz: 2000.0, phase_turns: 0.0 };
+    let normal_force = NormalForce {
+        nominal_n: 1000.0,
+        constant_n: 1000.0,
+        course_gain: 1.0,
+        course: Some(course),
+        vibration: Some(vibration),
+        transverse: Some(transverse),
+    };
+    let keys = FieldKeys { first: 20_000_001.0, second: -123_456.0, offset: 0.4 };
+    let field = |law| Some(Field { law, var: 0.2, correlation_length_m: 2e-5, keys });
+    vec![
+        Variation { field: field(FieldLaw::Bounded), ..Variation::none() },
+        Variation { field: field(FieldLaw::Gaussian), drift: Some(drift), normal_force: None },
+        Variation {
+            field: field(FieldLaw::LogNormal),
+            drift: None,
+            normal_force: Some(normal_force),
+        },
+    ]
+}
+
 /// How many [`more_cases`] and [`pushed_cases`] there are.
 pub(crate) fn more_count() -> usize {
     more_joints().len() * MORE_PER_JOINT + pushed().len() * one_joint_of_each_law().len()
@@ -421,11 +481,14 @@ pub(crate) fn limits() -> Limits<f64> {
     }
 }
 
-/// The same extraction with every number moved by up to 10 %, differently for each lane.
+/// The same extraction with every number but keys moved by up to 10 %, differently for each lane.
 pub(crate) fn varied(extraction: &Extraction<f64>, lane: u64) -> Extraction<f64> {
     let mut field = 0;
-    extraction.map(&mut |_, value| {
+    extraction.map(&mut |name, value| {
         field += 1;
+        if matches!(name.field(), "first" | "second") {
+            return value; // keys are whole
+        }
         value * (1.0 + 0.1 * uniform(11, lane, Stream::Disturbance, field))
     })
 }

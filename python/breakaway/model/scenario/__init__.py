@@ -37,6 +37,7 @@ from breakaway.model.scenario.distribution import (
 )
 from breakaway.model.scenario.disturbance import (
     BandLimitedDisturbance,
+    FieldDisturbance,
     GaussianDisturbance,
     UniformDisturbance,
 )
@@ -63,6 +64,16 @@ from breakaway.model.scenario.joint import (
 )
 from breakaway.model.scenario.laws import LAWS, Law, LawNumbers
 from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.normal_force import (
+    ConstantNormalForce,
+    CourseNormalForce,
+    Drift,
+    InterferenceNormalForce,
+    NormalVibration,
+    SpringNormalForce,
+    TemperatureNormalForce,
+    TransverseVibration,
+)
 from breakaway.model.scenario.population import Gentleness, PartDistributions, PartPopulation
 from breakaway.model.scenario.reference import (
     MinimumJerk,
@@ -77,12 +88,16 @@ from breakaway.model.scenario.sensor import ForceSensor, PositionSensor, Sensors
 __all__ = [
     "LAWS",
     "BandLimitedDisturbance",
+    "ConstantNormalForce",
     "Contact",
     "CoulombStiction",
+    "CourseNormalForce",
     "Distribution",
+    "Drift",
     "ElastoPlastic",
     "FeedAxis",
     "FeedSettings",
+    "FieldDisturbance",
     "FmPulses",
     "FmVibration",
     "ForceActuator",
@@ -93,6 +108,7 @@ __all__ = [
     "Gentleness",
     "Gms",
     "IdealActuator",
+    "InterferenceNormalForce",
     "Law",
     "LawNumbers",
     "Limits",
@@ -102,6 +118,7 @@ __all__ = [
     "Method",
     "MinimumJerk",
     "Normal",
+    "NormalVibration",
     "Part",
     "PartDistributions",
     "PartPopulation",
@@ -117,14 +134,17 @@ __all__ = [
     "Scenario",
     "SeizedJoint",
     "Sensors",
+    "SpringNormalForce",
     "StackPulses",
     "SteadyFeed",
     "StepReference",
     "StribeckJoint",
+    "TemperatureNormalForce",
     "TimedImpacts",
     "Timing",
     "Trace",
     "TrapezoidalVelocity",
+    "TransverseVibration",
     "TwoRegion",
     "TwoStep",
     "Uniform",

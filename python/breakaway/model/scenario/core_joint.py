@@ -23,6 +23,7 @@ def core_joint(joint: AnyJoint) -> dict[str, Any]:
 def nested_joint(joint: AnyJoint, values: dict[str, Any]) -> dict[str, Any]:
     """Nest what the core nests: the laws that build on LuGre hold its numbers in a table."""
     leave_out_zero(values, "viscous_n_s_per_m")
+    del values["drift"], values["normal_force"]  # the same for all laws: not the law's in the core
     if isinstance(joint, ElastoPlastic):
         own = {"elastic_share": values.pop("elastic_share")}
     elif isinstance(joint, Gms):

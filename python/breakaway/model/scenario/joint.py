@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from breakaway.model.scenario.model import Model, NotNegative, Positive
+from breakaway.model.scenario.normal_force import Drift, NormalForce
 
 ELEMENTS_MAX = 10
 """The most elements of a Maxwell-slip joint: as many as the core has room for."""
@@ -29,6 +30,8 @@ class _Bristle(Model):
 
     one_bristle: ClassVar[bool] = True
     """Whether the joint yields by one bristle, which is all that Runge-Kutta steps."""
+    in_plane: ClassVar[bool] = False
+    """Whether the law says what vibration across the motion does."""
     stiffness_n_per_m: Positive
     """k_e, stiffness of the bristles, in N/m."""
     damping_n_s_per_m: NotNegative
@@ -44,6 +47,11 @@ class _Guide(Model):
     """Friction left at the end of the guide, in N. Left out: the weight m g, as in the paper."""
     backward_ratio: Positive | None = None
     """Factor on all friction levels for backward motion. Left out: 1."""
+    drift: Drift | None = None
+    """A factor on all friction levels that changes during a pull. Left out: 1."""
+    normal_force: NormalForce | None = None
+    """The force across the joint, which all friction levels are proportional to. Left out: it is
+    constant, and the levels are what they are."""
 
 
 class SeizedJoint(_Guide, _Bristle, _Levels):  # fields come in the reverse order of the bases
@@ -78,6 +86,7 @@ class Lugre(StribeckJoint):
 
     """
 
+    in_plane: ClassVar[bool] = True
     law: Literal["lugre"] = "lugre"
     """The friction law."""
 
@@ -100,6 +109,7 @@ class ElastoPlastic(StribeckJoint):
 
     """
 
+    in_plane: ClassVar[bool] = True
     law: Literal["elasto_plastic"] = "elasto_plastic"
     """The friction law."""
     elastic_share: Annotated[float, Field(ge=0.0, lt=1.0)]
@@ -205,6 +215,7 @@ class CoulombStiction(_Guide, _Levels):
     """
 
     one_bristle: ClassVar[bool] = False
+    in_plane: ClassVar[bool] = False
     law: Literal["coulomb_stiction"] = "coulomb_stiction"
     """The friction law."""
     viscous_n_s_per_m: NotNegative = 0.0

@@ -28,12 +28,15 @@ from breakaway.model.scenario.controller import (
 from breakaway.model.scenario.disturbance import Disturbance, UniformDisturbance
 from breakaway.model.scenario.joint import AnyJoint, Part
 from breakaway.model.scenario.model import Model, Name, Text
+from breakaway.model.scenario.normal_force import STEPS_PER_CYCLE
 from breakaway.model.scenario.reference import Reference, StepReference
 from breakaway.model.scenario.run import LONGEST_STEP, Limits, Timing, Trace, longest_step_s
 from breakaway.model.scenario.sensor import Sensors, Watch
 
 SAMPLES_MAX = 4_000_000_000
 """Most integration steps of one run."""
+LENGTHS_MAX = 400_000
+"""Most correlation lengths of a field in a guide: beyond, its hash would repeat."""
 ROWS_MAX = 10_000_000
 """Most rows of one trace."""
 
@@ -73,7 +76,7 @@ class Scenario(Model):
     reference: Reference
     """Where the part should be."""
     disturbance: Disturbance = UniformDisturbance()
-    """What is unknown about the joint force."""
+    """How its friction varies along the way, or as the paper draws it anew in time."""
     actuator: Actuator = IdealActuator()
     """What pushes."""
     sensors: Sensors | None = None
@@ -207,6 +210,8 @@ class Scenario(Model):
 
     @model_validator(mode="after")
     def _holds_at_least_one_period(self) -> Self:
+        if self.disturbance.kind == "field":
+            return self
         hold, period = self.disturbance.hold_s, self.timing.control_period_s
         if self.disturbance.var > 0.0 and hold < period * (1 - 1e-9):
             raise ValueError(
@@ -214,6 +219,51 @@ class Scenario(Model):
                 "the joint force is constant over a control period"
             )
         return self
+
+    @model_validator(mode="after")
+    def _field_is_not_too_fine(self) -> Self:
+        if self.disturbance.kind != "field":
+            return self
+        length, whole = self.disturbance.correlation_length_m, self.joint.engagement_length_m
+        if whole / length > LENGTHS_MAX:
+            raise ValueError(
+                f"disturbance.correlation_length_m: {length!r} is not >= joint.engagement_length_m "
+                f"/ {LENGTHS_MAX:,} = {whole / LENGTHS_MAX:.4g}; give a longer one"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _vibration_can_be_followed(self) -> Self:
+        normal = self.joint.normal_force
+        if normal is None:
+            return self
+        if normal.transverse is not None:
+            self._check_law_is_in_plane()
+        step_s = self.timing.control_period_s / self.timing.steps_per_period
+        for name in ("vibration", "transverse"):
+            vibration = getattr(normal, name)
+            if vibration is None:
+                continue
+            fastest_hz = 1.0 / (STEPS_PER_CYCLE * step_s)
+            if vibration.frequency_hz > fastest_hz * (1 + 1e-9):
+                raise ValueError(
+                    f"joint.normal_force.{name}.frequency_hz: {vibration.frequency_hz!r} is not <= "
+                    f"{fastest_hz:.4g}, {STEPS_PER_CYCLE} integration steps of {step_s:.4g} s in a "
+                    "cycle; raise timing.steps_per_period"
+                )
+        return self
+
+    def _check_law_is_in_plane(self) -> None:
+        if not self.joint.in_plane:
+            raise ValueError(
+                f"joint.normal_force.transverse: law {self.joint.law!r} does not say what vibration "
+                "across the motion does; give joint.law = 'lugre' or 'elasto_plastic'"
+            )
+        if self.timing.integrator == "rk4":
+            raise ValueError(
+                "timing.integrator: 'rk4' does not step joint.normal_force.transverse; give "
+                "'linearly_implicit_midpoint'"
+            )
 
     @model_validator(mode="after")
     def _samples_its_pulses(self) -> Self:

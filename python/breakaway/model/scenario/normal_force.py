@@ -1,0 +1,319 @@
+"""The force across a joint: what its friction levels are proportional to, and what shakes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from breakaway.model.scenario.model import Model, NotNegative, Positive
+
+POINTS_MAX = 8
+"""The most points of a course: as many as the core has room for."""
+STEPS_PER_CYCLE = 20
+"""Fewest integration steps in a cycle of vibration."""
+
+Points = Annotated[tuple[float, ...], Field(strict=False, min_length=1, max_length=POINTS_MAX)]
+"""Numbers of a course; TOML has lists, which a strict tuple would refuse."""
+PositivePoints = Annotated[
+    tuple[Positive, ...], Field(strict=False, min_length=1, max_length=POINTS_MAX)
+]
+NotNegativePoints = Annotated[
+    tuple[NotNegative, ...], Field(strict=False, min_length=1, max_length=POINTS_MAX)
+]
+
+
+class NormalVibration(Model):
+    """Vibration normal to the joint: ``N + stiffness amplitude sin(2 pi (frequency t + phase))``."""
+
+    amplitude_m: NotNegative
+    """How far the bodies approach and part, from their mean, in m."""
+    stiffness_n_per_m: Positive
+    """Stiffness of the contact normal to the joint, in N/m."""
+    frequency_hz: Positive
+    """Frequency, in Hz; a cycle takes 20 integration steps or more."""
+    phase_turns: float = 0.0
+    """Phase at the start, in turns."""
+
+
+class TransverseVibration(Model):
+    """Vibration in the joint's plane, across the motion: ``y = amplitude sin(2 pi (frequency t + phase))``.
+
+    Friction opposes the velocity as a vector, so less of it is left along the motion. For laws with a
+    bristle in the plane: lugre and elasto_plastic.
+    """
+
+    amplitude_m: NotNegative
+    """How far the part is moved across, from its mean, in m."""
+    frequency_hz: Positive
+    """Frequency, in Hz; a cycle takes 20 integration steps or more."""
+    phase_turns: float = 0.0
+    """Phase at the start, in turns."""
+
+
+class _Followed(Model):
+    """What a course follows: the time, or the way."""
+
+    time_s: NotNegativePoints | None = None
+    """Times of its points since the start, rising, in s. Give this or travel_m."""
+    travel_m: Points | None = None
+    """Places of its points, the part's travel from its seat, rising, in m. Give this or time_s."""
+
+    @model_validator(mode="after")
+    def _follows_one(self) -> Self:
+        if (self.time_s is None) == (self.travel_m is None):
+            raise ValueError("time_s: and travel_m are both given or both left out; give one of them")
+        return self
+
+
+def _check_course(name: str, at: Sequence[float], values_name: str, values: Sequence[float]) -> None:
+    """Refuse places that do not rise, or of which there are not as many as values."""
+    if len(at) != len(values):
+        raise ValueError(
+            f"{values_name}: has {len(values)} numbers and {name} {len(at)}; give one for each point"
+        )
+    if any(later <= earlier for earlier, later in pairwise(at)):
+        raise ValueError(f"{name}: {list(at)!r} does not rise; give each point after the one before")
+
+
+def _of(model: _Followed) -> tuple[str, tuple[float, ...]]:
+    """Give the name and the places of what a course follows."""
+    if model.time_s is not None:
+        return "time_s", model.time_s
+    return "travel_m", model.travel_m or ()
+
+
+def core_course(name: str, at: Sequence[float], values: Sequence[float]) -> dict[str, Any]:
+    """Give a course under the names of the core, which has room for a fixed number of points."""
+    rest = POINTS_MAX - len(at)
+    return {
+        "over": name.rpartition("_")[0],
+        "points": len(at),
+        "at": [*at, *[at[-1]] * rest],
+        "values": [*values, *[values[-1]] * rest],
+    }
+
+
+class Drift(_Followed):
+    """A factor on the friction levels that changes slowly during a pull: heat, wear, dirt.
+
+    Straight lines between points; before the first and after the last it stays.
+
+    Examples
+    --------
+    >>> Drift(time_s=[0.0, 10.0], factor=[1.0, 0.8]).factor
+    (1.0, 0.8)
+
+    """
+
+    factor: PositivePoints
+    """The factor at each point."""
+
+    @model_validator(mode="after")
+    def _is_a_course(self) -> Self:
+        name, at = _of(self)
+        _check_course(name, at, "factor", self.factor)
+        return self
+
+    def core(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        name, at = _of(self)
+        return core_course(name, at, self.factor)
+
+
+class _NormalForce(Model):
+    """What every source of a normal force has."""
+
+    nominal_n: Positive | None = None
+    """Normal force at which the joint's levels hold, in N: a level over it is a coefficient of friction.
+    Left out: the force at the start, without vibration."""
+    vibration: NormalVibration | None = None
+    """Vibration normal to the joint. Left out: none."""
+    transverse: TransverseVibration | None = None
+    """Vibration in the joint's plane, across the motion. Left out: none."""
+
+    def core_source(self) -> dict[str, Any]:
+        """Give constant, gain and course under the names of the core."""
+        raise NotImplementedError
+
+    def start_n(self) -> float:
+        """Give the force at the start, without vibration, in N."""
+        raise NotImplementedError
+
+
+class ConstantNormalForce(_NormalForce):
+    """A normal force that stays: a preload.
+
+    Examples
+    --------
+    >>> ConstantNormalForce(force_n=2000.0).start_n()
+    2000.0
+
+    """
+
+    kind: Literal["constant"] = "constant"
+    """Where the force comes from."""
+    force_n: Positive
+    """N, in N."""
+
+    def core_source(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        return {"constant_n": self.force_n, "course_gain": 0.0, "course": None}
+
+    def start_n(self) -> float:
+        """Give the force at the start, in N."""
+        return self.force_n
+
+
+class CourseNormalForce(_NormalForce, _Followed):
+    """A normal force that follows the time or the way, along straight lines between points.
+
+    Examples
+    --------
+    >>> CourseNormalForce(travel_m=[0.0, 0.1], force_n=[2000.0, 500.0]).start_n()
+    2000.0
+
+    """
+
+    kind: Literal["course"] = "course"
+    """Where the force comes from."""
+    force_n: NotNegativePoints
+    """N at each point, in N."""
+
+    @model_validator(mode="after")
+    def _is_a_course(self) -> Self:
+        name, at = _of(self)
+        _check_course(name, at, "force_n", self.force_n)
+        return self
+
+    def core_source(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        name, at = _of(self)
+        return {"constant_n": 0.0, "course_gain": 1.0, "course": core_course(name, at, self.force_n)}
+
+    def start_n(self) -> float:
+        """Give the force at the start, in N."""
+        _, at = _of(self)
+        return _along(at, self.force_n, 0.0)
+
+
+class SpringNormalForce(_NormalForce):
+    """Springs that clamp the part and relax as it moves: ``N = preload - stiffness opening x``.
+
+    Examples
+    --------
+    >>> SpringNormalForce(preload_n=900.0, stiffness_n_per_m=1e5, opening_m_per_m=0.02).kind
+    'springs'
+
+    """
+
+    kind: Literal["springs"] = "springs"
+    """Where the force comes from."""
+    preload_n: Positive
+    """N at the seat, in N."""
+    stiffness_n_per_m: Positive
+    """Stiffness of the springs, in N/m."""
+    opening_m_per_m: float
+    """How far the springs relax for each meter of travel, such as the slope of a taper; below 0 they
+    tighten."""
+
+    def core_source(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        return {
+            "constant_n": self.preload_n,
+            "course_gain": -self.stiffness_n_per_m * self.opening_m_per_m,
+            "course": core_course("travel_m", [0.0, 1e3], [0.0, 1e3]),
+        }
+
+    def start_n(self) -> float:
+        """Give the force at the start, in N."""
+        return self.preload_n
+
+
+class InterferenceNormalForce(_NormalForce):
+    """A press fit: ``N = pressure area``.
+
+    The levels fall along the guide as the engaged area does, by equations (5) and (6); that is not said
+    here again.
+
+    Examples
+    --------
+    >>> InterferenceNormalForce(pressure_pa=2e6, area_m2=1e-3).start_n()
+    2000.0
+
+    """
+
+    kind: Literal["interference"] = "interference"
+    """Where the force comes from."""
+    pressure_pa: Positive
+    """Pressure in the fit, in Pa."""
+    area_m2: Positive
+    """Area of the whole fit, in m^2."""
+
+    def core_source(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        return {"constant_n": self.pressure_pa * self.area_m2, "course_gain": 0.0, "course": None}
+
+    def start_n(self) -> float:
+        """Give the force at the start, in N."""
+        return self.pressure_pa * self.area_m2
+
+
+class TemperatureNormalForce(_NormalForce):
+    """A fit that is heated or cooled: ``N = preload + expansion dT(t)``.
+
+    Examples
+    --------
+    >>> TemperatureNormalForce(
+    ...     preload_n=2000.0, expansion_n_per_k=-10.0, time_s=[0.0, 5.0], change_k=[0.0, 60.0]
+    ... ).start_n()
+    2000.0
+
+    """
+
+    kind: Literal["temperature"] = "temperature"
+    """Where the force comes from."""
+    preload_n: Positive
+    """N where the temperature has not changed, in N."""
+    expansion_n_per_k: float
+    """Change of N for each kelvin, in N/K; below 0 where heat loosens the fit."""
+    time_s: NotNegativePoints
+    """Times of the points since the start, rising, in s."""
+    change_k: Points
+    """Change of temperature at each point, in K; straight lines between them."""
+
+    @model_validator(mode="after")
+    def _is_a_course(self) -> Self:
+        _check_course("time_s", self.time_s, "change_k", self.change_k)
+        return self
+
+    def core_source(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        return {
+            "constant_n": self.preload_n,
+            "course_gain": self.expansion_n_per_k,
+            "course": core_course("time_s", self.time_s, self.change_k),
+        }
+
+    def start_n(self) -> float:
+        """Give the force at the start, in N."""
+        return self.preload_n + self.expansion_n_per_k * _along(self.time_s, self.change_k, 0.0)
+
+
+def _along(at: Sequence[float], values: Sequence[float], place: float) -> float:
+    import numpy as np
+
+    return float(np.interp(place, at, values))
+
+
+NormalForce = Annotated[
+    ConstantNormalForce
+    | CourseNormalForce
+    | SpringNormalForce
+    | InterferenceNormalForce
+    | TemperatureNormalForce,
+    Field(discriminator="kind"),
+]
+"""A normal force, wherever it comes from."""
