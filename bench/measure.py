@@ -39,6 +39,10 @@ def kernel() -> dict[str, float]:
     return figures | {
         "single_run_over_by_hand": wall_s["single_run"] / wall_s["single_run_by_hand"],
         "by_hand_over_batch": wall_s[f"by_hand_{widest}"] / wall_s[f"batch_{widest}"],
+        "field_over_batch": wall_s["batch_field"] / wall_s["batch_1_thread"],
+        "fine_field_over_batch": wall_s["batch_fine_field"] / wall_s["batch_1_thread"],
+        "field_over_batch_all_metrics": wall_s["batch_field_all_metrics"]
+        / wall_s["batch_all_metrics"],
         "speedup_of_2_threads": wall_s["batch_1_thread"] / wall_s["batch_2_threads"],
     }
 

@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 
 from tests.export import test_bits
-from tests.export.kinds import CONTROLLERS, LOOPS, PLANTS
+from tests.export.kinds import CONTROLLERS, LOOPS, PLANTS, VARYING
 
 
 def main() -> None:
@@ -30,6 +30,11 @@ def main() -> None:
             print(
                 f"{check.__name__[5:-1]} {name}, {real}: {steps} steps, the same bits", flush=True
             )
+    for name, what in product(VARYING, ("plant", "loop")):
+        with tempfile.TemporaryDirectory() as folder:
+            test_bits.test_varying_friction(name, what, Path(folder))
+        done += 1
+        print(f"varying friction {name}, {what}: {steps} steps, the same bits", flush=True)
     print(f"{done} kinds and types, {done * steps} steps, the same bits")
 
 

@@ -189,5 +189,31 @@ def plants() -> dict[str, bk.Scenario]:
     return found
 
 
+def varying() -> dict[str, bk.Scenario]:
+    """Friction that varies along the way, during a pull, and with a normal force that shakes: what
+    single precision cannot hold."""
+    joints = {name: PLANTS[name].joint for name in ("lugre", "elasto_plastic", "gms", "coulomb")}
+    drift = bk.Drift(time_s=[0.0, 1e-3, 4e-3], factor=[1.0, 0.9, 1.1])
+    shaken = bk.CourseNormalForce(
+        travel_m=[0.0, LENGTH_M],
+        force_n=[1000.0, 600.0],
+        vibration=bk.NormalVibration(
+            amplitude_m=2e-6, stiffness_n_per_m=1e8, frequency_hz=900.0, phase_turns=0.2
+        ),
+    )
+    across = bk.TransverseVibration(amplitude_m=5e-6, frequency_hz=2000.0)
+    found: dict[str, bk.Scenario] = {}
+    laws = (("bounded", 0.3), ("gaussian", 0.2), ("log_normal", 0.3), ("bounded", 0.1))
+    for n, ((name, joint), (law, var)) in enumerate(zip(joints.items(), laws, strict=True)):
+        field = bk.FieldDisturbance(law=law, var=var, correlation_length_m=2e-5)
+        steps = {"timing.steps_per_period": 1 + 2 * (n % 2)}
+        normal = shaken.model_copy(update={"transverse": across if n < 2 else None})
+        changed = joint.model_copy(update={"drift": drift, "normal_force": normal})
+        found[f"{name}_varying"] = BASE.with_(steps, joint=changed, disturbance=field)
+        found[f"{name}_{law}_field"] = BASE.with_(steps, joint=joint, disturbance=field)
+    return found
+
+
 CONTROLLERS, PLANTS = controllers(), plants()
+VARYING = varying()
 LOOPS = {**PLANTS, **{name: CONTROLLERS[name] for name in list(CONTROLLERS)[12:]}}

@@ -8,7 +8,7 @@ from typing import get_args
 import numpy as np
 import pytest
 from tests.export.compiling import compiled, same_bits
-from tests.export.kinds import CONTROLLERS, LENGTH_M, LOOPS, PLANTS
+from tests.export.kinds import CONTROLLERS, LENGTH_M, LOOPS, PLANTS, VARYING
 
 import breakaway as bk
 from breakaway.model.scenario.actuator import Actuator
@@ -86,6 +86,27 @@ def test_loops(name: str, real: str, tmp_path: Path) -> None:
     assert np.isfinite(ours[:400]).all()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("what", ["plant", "loop"])
+@pytest.mark.parametrize("name", VARYING)
+def test_varying_friction(name: str, what: str, tmp_path: Path) -> None:
+    """The field of the first run of the seed is part of the code: it is what its parameters say."""
+    code = compiled(VARYING[name], what, "double", tmp_path)
+    steps = PLANT_STEPS if what == "plant" else LOOP_STEPS
+    inputs = courses(np.random.default_rng(9), steps, (600.0, 0.2, 1.0))
+    ours, theirs = code.run(inputs), code.expected(inputs)
+    assert same_bits(ours, theirs)
+    assert len(np.unique(ours[:, 0])) > 100
+
+
+@pytest.mark.parametrize("what", ["plant", "loop"])
+def test_single_precision_has_no_field(what: str, tmp_path: Path) -> None:
+    with pytest.raises(bk.ScenarioError, match="^disturbance.kind: 'field' is a hash .* double"):
+        bk.export_c(VARYING["lugre_varying"], what=what, real="float", out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    bk.export_c(VARYING["lugre_varying"], what="controller", real="float", out=tmp_path / "out")
+
+
 def test_every_kind_is_among_them() -> None:
     """A kind that is new in a scenario model has to be exported, too."""
 
@@ -94,7 +115,7 @@ def test_every_kind_is_among_them() -> None:
             return {union}
         return {kind for part in get_args(union) for kind in kinds(part) if isinstance(kind, type)}
 
-    scenarios = [*CONTROLLERS.values(), *PLANTS.values()]
+    scenarios = [*CONTROLLERS.values(), *PLANTS.values(), *VARYING.values()]
     controllers = {type(one.controller) for one in scenarios}
     two_steps = [one.controller for one in scenarios if isinstance(one.controller, bk.TwoStep)]
     for found, union in (

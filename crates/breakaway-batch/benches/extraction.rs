@@ -11,6 +11,7 @@ use std::time::Instant;
 use breakaway_batch::yardstick::{iae_by_hand, iae_of_one_by_hand};
 use breakaway_batch::{Batch, FIGURES, Figure, Instructions, Job, Wanted, run, run_batch};
 use breakaway_core::test_models::{paper_as_computed, paper_limits};
+use breakaway_core::variation::{Field, FieldKeys, FieldLaw};
 
 /// 0.5 simulated seconds at 100 kHz.
 const SAMPLES: u64 = 50_000;
@@ -65,6 +66,9 @@ fn cases() -> Vec<Case> {
         case("batch_2_threads", 2 * PACKS * lanes, Box::new(batch(plain, 2, &["iae_m_s"]))),
         case("batch_all_metrics", PACKS * lanes, Box::new(batch(plain, 1, &all))),
         case("batch_disturbed", PACKS * lanes, Box::new(batch(job(0.1), 1, &["iae_m_s"]))),
+        case("batch_field", PACKS * lanes, Box::new(batch(along(1e-3), 1, &["iae_m_s"]))),
+        case("batch_fine_field", PACKS * lanes, Box::new(batch(along(1e-4), 1, &["iae_m_s"]))),
+        case("batch_field_all_metrics", PACKS * lanes, Box::new(batch(along(1e-3), 1, &all))),
     ];
     for with in Instructions::available() {
         let (name, runs) = (with.name(), with.lanes());
@@ -82,6 +86,15 @@ fn job(var: f64) -> Job {
     extraction.disturbance.var = var;
     let (limits, samples) = (paper_limits(), SAMPLES);
     Job { extraction, limits, samples, seed: 0, run: 0, trace_every: 0 }
+}
+
+/// The plain job with a field of friction along the way, of a correlation length in m.
+fn along(correlation_length_m: f64) -> Job {
+    let mut job = job(0.0);
+    let keys = FieldKeys { first: 0.0, second: 0.0, offset: 0.0 };
+    let field = Field { law: FieldLaw::Bounded, var: 0.3, correlation_length_m, keys };
+    job.extraction.variation.field = Some(field);
+    job
 }
 
 fn named(names: &[&str]) -> Vec<Figure> {

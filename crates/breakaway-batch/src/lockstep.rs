@@ -207,7 +207,7 @@ impl<'a, V: Wide, const N: usize> Pack<'a, V, N> {
 #[inline(always)]
 pub(crate) fn disturbed<V: Wide>(extraction: &Extraction<V>, held: &[f64]) -> Factors<V> {
     let draws = Draws { disturbance: V::gather(held), noise: Noise::none() };
-    extraction.disturbance.factors(draws)
+    extraction.factors(draws)
 }
 
 /// The noise of all lanes at a sample of the pack.

@@ -233,8 +233,17 @@ impl<R: Real> Extraction<R> {
     #[inline(always)]
     pub fn step(&self, state: &mut ExtractionState<R>, draws: Draws<R>) -> Sample<R> {
         let setpoint = self.next_setpoint(&mut state.sampling);
-        let factors = self.disturbance.factors(draws);
+        let factors = self.factors(draws);
         self.follow::<false>(state, &setpoint, &factors, &draws.noise)
+    }
+
+    /// The paper's random factor for a held draw. Friction that varies along the way has none.
+    #[inline(always)]
+    pub fn factors(&self, draws: Draws<R>) -> Factors<R> {
+        if self.variation.field.is_some() {
+            return Factors { joint_force: R::one(), friction_level: R::one() };
+        }
+        self.disturbance.factors(draws)
     }
 
     /// What the reference asks for at this sample; moves the clock on to the next.

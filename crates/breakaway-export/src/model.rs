@@ -131,7 +131,7 @@ pub fn begin<R: Real>(
 
 /// The disturbance of a period.
 pub fn factors<R: Real>(extraction: &Extraction<R>, draw: R) -> Factors<R> {
-    extraction.disturbance.factors(Draws { disturbance: draw, noise: Noise::none() })
+    extraction.factors(Draws { disturbance: draw, noise: Noise::none() })
 }
 
 /// What ends a period of the plant: the force that its sensor sees next.

@@ -22,7 +22,7 @@ pub(crate) fn export_code<'py>(
     real: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (what, precision) = (what_of(what)?, precision_of(real)?);
-    let program = precision.program(what, &job::read(job)?.extraction);
+    let program = precision.program(what, &job::read(job)?.drawn().extraction);
     let code = code(&program, precision);
     let dict = PyDict::new(py);
     numbers(&dict, &program, precision, &code)?;

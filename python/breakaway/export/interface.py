@@ -131,8 +131,32 @@ def flow(what: What, direction: str, names: list[str]) -> list[Variable]:
     return variables
 
 
+_KEY = Range(-(2.0**25), 2.0**25)
+CORE_ONLY: dict[str, tuple[str, str, Range]] = {
+    "variation.field.keys.first": ("1", "What makes the field the run's own: a whole number.", _KEY),
+    "variation.field.keys.second": ("1", "What makes the field the run's own: another.", _KEY),
+    "variation.field.keys.offset": ("1", "Where in its cell the field begins.", Range(0.0, 1.0)),
+    "variation.drift.at": ("1", "Place of a point of the drift, in s or m.", Range()),
+    "variation.drift.values": ("1", "Factor on the friction levels there.", Range(0.0, above=True)),
+    "variation.normal_force.constant_n": ("N", "Normal force beside its course.", Range()),
+    "variation.normal_force.course_gain": ("1", "What the course is multiplied by.", Range()),
+    "variation.normal_force.course.at": ("1", "Place of a point of the course, in s or m.", Range()),
+    "variation.normal_force.course.values": ("1", "The course there.", Range()),
+}
+"""Numbers that only the core has -> unit, meaning and range."""
+_TABLES = (
+    ("variation.field.", "disturbance."),
+    ("variation.normal_force.", "joint.normal_force."),
+)
+"""Tables of the core -> where the scenario has them."""
+
+
 def parameter(scenario: Scenario, path: str, name: str, value: float, literal: str) -> Variable:
     """Describe a number of a resolved scenario, by its path among the core's numbers."""
+    plain = ".".join(part for part in path.split(".") if not part.isdigit())
+    if plain in CORE_ONLY:
+        unit, description, bounds = CORE_ONLY[plain]
+        return Variable(name, path, unit, description, value, literal, bounds)
     path = _in_scenario(path)
     owner: BaseModel = scenario
     *parents, last = [part for part in path.split(".") if not part.isdigit()]
@@ -157,6 +181,9 @@ def _in_scenario(path: str) -> str:
         _, which, name = path.split(".")
         if name in ("noise_rms", "quantum"):
             return f"{path}{'_m' if which == 'position' else '_n'}"
+    for core, ours in _TABLES:
+        if path.startswith(core):
+            return f"{ours}{path.removeprefix(core)}"
     return path
 
 

@@ -59,6 +59,11 @@ class Recording:
 
 def record(resolved: Scenario, what: What, real: Real) -> Recording:
     """Record a part of a resolved scenario."""
+    if real == "float" and what != "controller" and resolved.disturbance.kind == "field":
+        raise ScenarioError(
+            "disturbance.kind: 'field' is a hash of whole numbers that float cannot hold; export "
+            "with real = double, or the controller alone"
+        )
     found = _core.export_code(core_job(resolved, 0), what, real)
     parameters = [parameter(resolved, *one) for one in found["parameters"]]
     _check_defaults(parameters, real)

@@ -16,7 +16,7 @@ pub(crate) use normal_force::{hypotenuse, speed};
 
 use crate::maybe::Maybe;
 use crate::name::{Name, within};
-use crate::real::Real;
+use crate::real::{Block, Real};
 
 /// What varies the friction levels of a joint; what is left out does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,31 @@ pub struct Variation<R> {
     pub drift: Option<Course<R>>,
     /// With the force across the joint.
     pub normal_force: Option<NormalForce<R>>,
+}
+
+/// What varies the levels other than a field does.
+struct Meanwhile<'a, R> {
+    variation: &'a Variation<R>,
+    x: R,
+    t: R,
+}
+
+impl<R: Real> Block for Meanwhile<'_, R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn compute(self) -> R {
+        let Self { variation, x, t } = self;
+        let mut factor = R::one();
+        if let Some(drift) = &variation.drift {
+            R::section("drift: a factor on the friction levels");
+            factor = drift.at(x, t);
+        }
+        if let Some(normal) = &variation.normal_force {
+            factor = factor * normal.share(x, t);
+        }
+        factor
+    }
 }
 
 impl<R: Real> Variation<R> {
@@ -75,18 +100,14 @@ impl<R: Real> Variation<R> {
     /// ```
     #[inline(always)]
     pub fn factor(&self, cell: &mut FieldCell<R>, x: R, t: R) -> R {
-        let mut factor = match &self.field {
+        let along = match &self.field {
             Some(field) => field.factor(cell, x),
             None => R::one(),
         };
-        if let Some(drift) = &self.drift {
-            R::section("drift: a factor on the friction levels");
-            factor = factor * drift.at(x, t);
+        if self.is_field_at_most() {
+            return along;
         }
-        if let Some(normal) = &self.normal_force {
-            factor = factor * normal.share(x, t);
-        }
-        factor
+        along * R::apart(Meanwhile { variation: self, x, t })
     }
 
     /// The velocity in m/s that vibration adds across the motion at time `t` in s, if there is any.

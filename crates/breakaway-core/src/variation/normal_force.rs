@@ -4,7 +4,7 @@ use super::course::{Course, Over};
 use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
-use crate::real::Real;
+use crate::real::{Block, Real};
 use crate::sine::sine_of_turns;
 
 parameters! {
@@ -120,13 +120,28 @@ pub(crate) fn speed<R: Real>(v: R, transverse: Maybe<R>) -> R {
 /// √(a² + b²) for a ≥ b ≥ 0.
 #[inline(always)]
 pub(crate) fn hypotenuse<R: Real>(larger: R, smaller: R) -> R {
-    let (half, tiny) = (R::constant(0.5), R::constant(1e-150));
-    let scale = larger.max(tiny);
-    let ratio = smaller / scale;
-    let square = ratio.mul_add(ratio, R::one());
-    let mut root = (R::constant(0.425) * ratio).mul_add(ratio, R::one());
-    for _ in 0..3 {
-        root = half * (root + square / root);
+    R::apart(Hypotenuse { larger, smaller })
+}
+
+struct Hypotenuse<R> {
+    larger: R,
+    smaller: R,
+}
+
+impl<R: Real> Block for Hypotenuse<R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn compute(self) -> R {
+        let Self { larger, smaller } = self;
+        let (half, tiny) = (R::constant(0.5), R::constant(1e-150));
+        let scale = larger.max(tiny);
+        let ratio = smaller / scale;
+        let square = ratio.mul_add(ratio, R::one());
+        let mut root = (R::constant(0.425) * ratio).mul_add(ratio, R::one());
+        for _ in 0..3 {
+            root = half * (root + square / root);
+        }
+        larger * root
     }
-    larger * root
 }
