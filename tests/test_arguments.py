@@ -284,6 +284,15 @@ def calls(w):
         "export_c": (bk.export_c, {"scenario": w.scenario, "out": w.folder / "c"}),
         "export_fmu": (bk.export_fmu, {"scenario": w.scenario, "out": w.folder / "rig.fmu"}),
         "find_breakaway_events": (bk.find_breakaway_events, {"log": w.starts[0]}),
+        "friction_field": (
+            bk.friction_field,
+            {
+                "scenario": w.scenario.with_(
+                    disturbance=bk.FieldDisturbance(correlation_length_m=1e-3)
+                ),
+                "position_m": t_s,
+            },
+        ),
         "fit_population": (bk.fit_population, {"logs": w.starts}),
         "grid_columns": (bk.grid_columns, {"levels": {"part.mass_kg": [1.0, 2.0]}}),
         "identifiability": (bk.identifiability, {"log": w.log, "law": "coulomb"}),

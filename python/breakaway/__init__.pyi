@@ -69,8 +69,8 @@ from breakaway.model.scenario import BandLimitedDisturbance as BandLimitedDistur
 from breakaway.model.scenario import ConstantNormalForce as ConstantNormalForce
 from breakaway.model.scenario import Contact as Contact
 from breakaway.model.scenario import CoulombStiction as CoulombStiction
-from breakaway.model.scenario import CourseNormalForce as CourseNormalForce
-from breakaway.model.scenario import Drift as Drift
+from breakaway.model.scenario import DriftOverTime as DriftOverTime
+from breakaway.model.scenario import DriftOverTravel as DriftOverTravel
 from breakaway.model.scenario import ElastoPlastic as ElastoPlastic
 from breakaway.model.scenario import FeedAxis as FeedAxis
 from breakaway.model.scenario import FeedSettings as FeedSettings
@@ -94,6 +94,8 @@ from breakaway.model.scenario import Lugre as Lugre
 from breakaway.model.scenario import Method as Method
 from breakaway.model.scenario import MinimumJerk as MinimumJerk
 from breakaway.model.scenario import Normal as Normal
+from breakaway.model.scenario import NormalForceOverTime as NormalForceOverTime
+from breakaway.model.scenario import NormalForceOverTravel as NormalForceOverTravel
 from breakaway.model.scenario import NormalVibration as NormalVibration
 from breakaway.model.scenario import Part as Part
 from breakaway.model.scenario import PartDistributions as PartDistributions

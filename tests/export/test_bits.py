@@ -101,7 +101,7 @@ def test_varying_friction(name: str, what: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("what", ["plant", "loop"])
 def test_single_precision_has_no_field(what: str, tmp_path: Path) -> None:
-    with pytest.raises(bk.ScenarioError, match="^disturbance.kind: 'field' is a hash .* double"):
+    with pytest.raises(bk.ScenarioError, match=r"^disturbance\.kind: 'field' is a hash .* double"):
         bk.export_c(VARYING["lugre_varying"], what=what, real="float", out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
     bk.export_c(VARYING["lugre_varying"], what="controller", real="float", out=tmp_path / "out")

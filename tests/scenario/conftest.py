@@ -46,7 +46,9 @@ def tag_of(model):
     return {
         name: field.default
         for name, field in model.model_fields.items()
-        if name in ("law", "kind") and get_origin(field.annotation) is Literal
+        if name in ("law", "kind")
+        and get_origin(field.annotation) is Literal
+        and len(get_args(field.annotation)) == 1
     }
 
 
@@ -67,6 +69,8 @@ def example(model):
             values[name] = example(inner[0])
         elif name in TYPICAL:
             values[name] = TYPICAL[name]
+        elif schema[name]["type"] == "array":
+            values[name] = [1.0]
         elif "enum" in schema[name]:
             values[name] = schema[name]["enum"][0]
         elif schema[name]["type"] == "string":
@@ -148,6 +152,8 @@ def walk(model=bk.Scenario, path=(), label="", wrap=lambda values: values):
     for name, field in model.model_fields.items():
         yield Site(f"{label}{name}", (*path, name), model, wrap)
         inner = models_in(field.annotation)
+        if name in ("drift", "normal_force") and label != "joint[lugre].":
+            continue  # the same for all laws
         for member in inner:
             tag = "".join(tag_of(member).values()) if len(inner) > 1 else ""
             yield from walk(

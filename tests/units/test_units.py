@@ -38,6 +38,7 @@ ATOMS = {
     "f": {"kg": -1, "m": -2, "s": 4, "A": 2},
     "rad": {"rad": 1},
     "degc": {"K": 1},
+    "k": {"K": 1},
     "percent": {},
 }
 """Words of names -> exponents of the base units they mean."""

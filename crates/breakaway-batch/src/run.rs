@@ -116,14 +116,18 @@ unsafe fn run_with_fma<const AXIS: bool, E>(
     run_kinds::<AXIS, E>(job, keep_going)
 }
 
-/// The extraction again if it is of the commonest kinds, written so that the compiler sees them.
+/// The extraction again if it is of the commonest kinds, written so that the compiler sees them; with
+/// friction that varies along the way, or with friction that does not.
 #[inline(always)]
-pub(crate) fn plain_kinds<R: Real>(extraction: &Extraction<R>) -> Option<Extraction<R>> {
+pub(crate) fn plain_kinds<R: Real, const FIELD: bool>(
+    extraction: &Extraction<R>,
+) -> Option<Extraction<R>> {
     let Extraction { joint, controller, actuator, timing, .. } = *extraction;
     match (joint, controller, actuator) {
         (Joint::Lugre(joint), Controller::Pid(pid), Actuator::Ideal)
             if joint.is_plain()
                 && extraction.variation.is_field_at_most()
+                && extraction.variation.field.is_some() == FIELD
                 && extraction.sensors.is_none()
                 && extraction.watch.is_none()
                 && pid.is_plain()
@@ -133,7 +137,10 @@ pub(crate) fn plain_kinds<R: Real>(extraction: &Extraction<R>) -> Option<Extract
                 joint: Joint::Lugre(joint.plain()),
                 controller: Controller::Pid(Pid::plain(pid.gains)),
                 actuator: Actuator::Ideal,
-                variation: Variation { drift: None, normal_force: None, ..extraction.variation },
+                variation: match extraction.variation.field {
+                    Some(field) if FIELD => Variation { field: Some(field), ..Variation::none() },
+                    _ => Variation::none(),
+                },
                 sensors: None,
                 watch: None,
                 timing: Timing::every_period_once(timing.control_period_s),
@@ -155,12 +162,7 @@ fn run_kinds<const AXIS: bool, E>(
     let mut draws =
         HeldDraws::new(job.seed, [job.run], |_| disturbance, |_| timing.control_period_s);
     let mut rows = Rows::of(job);
-    let plain = if AXIS || !job.extraction.variation.is_none() {
-        None
-    } else {
-        plain_kinds(&job.extraction)
-            .map(|plain| Extraction { variation: Variation::none(), ..plain })
-    };
+    let plain = if AXIS { None } else { plain_kinds::<_, false>(&job.extraction) };
     let per_check = (STEPS_PER_CHECK / u64::from(job.extraction.timing.steps_per_period)).max(1);
     let mut n = 0;
     while n < job.samples && progress.metrics.goes_on() {

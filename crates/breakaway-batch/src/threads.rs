@@ -67,11 +67,21 @@ pub enum Ended<E> {
 /// What a thread does of a batch.
 fn take_part(work: &Work, queue: &Queue, instructions: Instructions) {
     let Job { extraction, limits, .. } = &work.batch.common;
-    if plain_kinds(extraction).is_none() || limits.after_release_s.is_finite() {
-        return instructions.run_large(Lockstep { work, queue });
+    if limits.after_release_s.is_finite() {
+        instructions.run_large(Lockstep { work, queue });
+    } else if plain_kinds::<_, false>(extraction).is_some() {
+        trust::<false>(work, queue, instructions);
+    } else if plain_kinds::<_, true>(extraction).is_some() {
+        trust::<true>(work, queue, instructions);
+    } else {
+        instructions.run_large(Lockstep { work, queue });
     }
+}
+
+/// What a thread does of a batch of the commonest kinds.
+fn trust<const FIELD: bool>(work: &Work, queue: &Queue, instructions: Instructions) {
     while let (Some(runs), true) = (queue.take(instructions.lanes()), work.goes_on()) {
-        if !instructions.run(Trusted { work, runs: runs.clone() }) {
+        if !instructions.run(Trusted::<FIELD> { work, runs: runs.clone() }) {
             instructions.run_large(Lockstep { work, queue: &Queue::of(runs) });
         }
     }

@@ -5,7 +5,6 @@ use std::ops::Range;
 use breakaway_core::metrics::Limits;
 use breakaway_core::reference::{Reference, Setpoint};
 use breakaway_core::sensor::Noise;
-use breakaway_core::variation::Variation;
 use breakaway_core::{Extraction, ExtractionState, Metrics};
 
 use crate::draws::HeldDraws;
@@ -19,13 +18,13 @@ use crate::work::Work;
 const BLOCK: u64 = 4096;
 
 /// At most as many runs as there are lanes, which are trusted to keep their bounds. Everything is
-/// compiled into one loop for them.
-pub(crate) struct Trusted<'a> {
+/// compiled into one loop for them; into one more where friction varies along the way.
+pub(crate) struct Trusted<'a, const FIELD: bool> {
     pub(crate) work: &'a Work<'a>,
     pub(crate) runs: Range<usize>,
 }
 
-impl Kernel for Trusted<'_> {
+impl<const FIELD: bool> Kernel for Trusted<'_, FIELD> {
     /// Whether the trust was justified; if not, nothing was done.
     type Output = bool;
 
@@ -37,7 +36,7 @@ impl Kernel for Trusted<'_> {
         let run: [usize; N] = std::array::from_fn(|lane| (runs.start + lane).min(runs.end - 1));
         let (extraction, limits) = batch.gather::<V>(&run);
         let ends_early = (0..N).any(|lane| limits.after_release_s.extract(lane).is_finite());
-        let (Some(plain), false) = (plain_kinds(&extraction), ends_early) else {
+        let (Some(plain), false) = (plain_kinds::<_, FIELD>(&extraction), ends_early) else {
             return false;
         };
         let disturbance = |lane| extraction.disturbance.map(&mut lane_of(lane));
@@ -52,18 +51,7 @@ impl Kernel for Trusted<'_> {
         let (mut n, samples) = (0, batch.common.samples);
         while n < samples && work.goes_on() {
             let end = samples.min(n + BLOCK);
-            // Written twice so that compilers see which it is.
-            match plain.variation.field {
-                None => {
-                    let plain = Extraction { variation: Variation::none(), ..plain };
-                    moving.advance(work, &plain, &limits, &setpoints, n..end);
-                }
-                Some(field) => {
-                    let variation = Variation { field: Some(field), ..Variation::none() };
-                    let plain = Extraction { variation, ..plain };
-                    moving.advance(work, &plain, &limits, &setpoints, n..end);
-                }
-            }
+            moving.advance(work, &plain, &limits, &setpoints, n..end);
             if !moving.all_within(&limits) {
                 return false;
             }

@@ -5,7 +5,7 @@ use crate::joint::{At, Bristle, ElementState, Elements, Frozen, JointState, Law,
 use crate::maybe::Maybe;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
-use crate::real::Real;
+use crate::real::{Block, Real};
 use crate::variation::{FieldCell, Variation};
 
 /// What moves: the part on its seat.
@@ -418,7 +418,11 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
     #[inline(always)]
     fn rates(&self, state: &JointState<R>, t: R, [x, v, z]: [R; 3]) -> ([R; 3], R) {
         let state = JointState { bristle_m: z, ..*state };
-        let level = self.level_factor(&mut FieldCell::nowhere(), x, t);
+        let level = if self.variation.is_none() {
+            self.factors.friction_level
+        } else {
+            self.factors.friction_level * R::apart(Anywhere { variation: *self.variation, x, t })
+        };
         let Some(b) = self.joint.freeze(&state, x, v, level) else {
             return ([R::constant(f64::NAN); 3], R::constant(f64::NAN));
         };
@@ -439,14 +443,11 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         R::section("Runge-Kutta of order four");
         let joint = state.joint();
         let start = [state.position_m, state.velocity_m_per_s, state.bristle_m];
-        let at = |slope: &[R; 3], step: R| {
-            self.rates(&joint, t + step, core::array::from_fn(|i| start[i] + step * slope[i]))
-        };
         let half = R::constant(0.5) * h;
-        let (k1, r1) = at(&[R::zero(); 3], R::zero());
-        let (k2, r2) = at(&k1, half);
-        let (k3, r3) = at(&k2, half);
-        let (k4, r4) = at(&k3, h);
+        let (k1, r1) = self.rates(&joint, t, start);
+        let (k2, r2) = self.rates(&joint, t + half, ahead(&start, &k1, half));
+        let (k3, r3) = self.rates(&joint, t + half, ahead(&start, &k2, half));
+        let (k4, r4) = self.rates(&joint, t + h, ahead(&start, &k3, h));
         let mean =
             |a: R, b: R, c: R, d: R| (a + d + R::constant(2.0) * (b + c)) * R::constant(1.0 / 6.0);
         let [x, v, z]: [R; 3] =
@@ -460,6 +461,28 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
             push_force_n: self.push.force_n,
             mean_velocity_m_per_s: (x - start[0]) / h,
         }
+    }
+}
+
+/// start + step · slope.
+#[inline(always)]
+fn ahead<R: Real>(start: &[R; 3], slope: &[R; 3], step: R) -> [R; 3] {
+    core::array::from_fn(|i| start[i] + step * slope[i])
+}
+
+/// What the friction levels are multiplied by at a place and a time that the part only passes.
+struct Anywhere<R> {
+    variation: Variation<R>,
+    x: R,
+    t: R,
+}
+
+impl<R: Real> Block for Anywhere<R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn compute(self) -> R {
+        self.variation.factor(&mut FieldCell::nowhere(), self.x, self.t)
     }
 }
 

@@ -133,14 +133,22 @@ def flow(what: What, direction: str, names: list[str]) -> list[Variable]:
 
 _KEY = Range(-(2.0**25), 2.0**25)
 CORE_ONLY: dict[str, tuple[str, str, Range]] = {
-    "variation.field.keys.first": ("1", "What makes the field the run's own: a whole number.", _KEY),
+    "variation.field.keys.first": (
+        "1",
+        "What makes the field the run's own: a whole number.",
+        _KEY,
+    ),
     "variation.field.keys.second": ("1", "What makes the field the run's own: another.", _KEY),
     "variation.field.keys.offset": ("1", "Where in its cell the field begins.", Range(0.0, 1.0)),
     "variation.drift.at": ("1", "Place of a point of the drift, in s or m.", Range()),
     "variation.drift.values": ("1", "Factor on the friction levels there.", Range(0.0, above=True)),
     "variation.normal_force.constant_n": ("N", "Normal force beside its course.", Range()),
     "variation.normal_force.course_gain": ("1", "What the course is multiplied by.", Range()),
-    "variation.normal_force.course.at": ("1", "Place of a point of the course, in s or m.", Range()),
+    "variation.normal_force.course.at": (
+        "1",
+        "Place of a point of the course, in s or m.",
+        Range(),
+    ),
     "variation.normal_force.course.values": ("1", "The course there.", Range()),
 }
 """Numbers that only the core has -> unit, meaning and range."""

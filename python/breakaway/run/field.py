@@ -32,8 +32,8 @@ def friction_field(
 ) -> FrictionField:
     """Give the field of friction that a run of a scenario meets, with its exact slope.
 
-    ``1 + s(x)`` by which a `FieldDisturbance` multiplies all friction levels, in the very arithmetic
-    of the run. It depends on the scenario's seed, the number of the run and the place alone.
+    ``1 + s(x)`` by which a `FieldDisturbance` multiplies all friction levels, in the very
+    arithmetic of the run. It depends on the scenario's seed, the number of the run and the place.
 
     Parameters
     ----------

@@ -197,8 +197,9 @@ def _with_nominal(joint: AnyJoint) -> AnyJoint:
     nominal_n = normal.start_n()
     if not np.all(nominal_n > 0.0):
         raise ScenarioError(
-            f"joint.normal_force.nominal_n: is left out, and the force at the start is {nominal_n!r} "
-            "N, at which no friction levels can hold; give the force at which they hold, in N"
+            "joint.normal_force.nominal_n: is left out, and the force at the start is "
+            f"{nominal_n!r} N, at which no friction levels can hold; give the force "
+            "at which they hold, in N"
         )
     stated = normal.model_copy(update={"nominal_n": nominal_n})
     return joint.model_copy(update={"normal_force": stated})

@@ -24,7 +24,7 @@ parameters! {
 pub enum FieldLaw {
     /// 1 + s = 1 + var · b, |b| ≤ 1: bell-shaped, with a standard deviation of 0.428 var.
     Bounded,
-    /// 1 + s = 1 + var · z, z normal with variance 1 but for |z| < 4.05.
+    /// 1 + s = 1 + var · z, z normal with variance 1 but for |z| < 4.8.
     Gaussian,
     /// 1 + s = exp(var · z − var²/2).
     LogNormal,
@@ -38,14 +38,14 @@ pub enum FieldLaw {
 /// ```
 ///
 /// B₅ is the quintic B-spline, B₅(0) = 11/20. At the correlation length ℓ the correlation has fallen
-/// to 1/e, and at 2.90 ℓ to zero. The w_i are independent, uniform or normal within ±3; the offset o is
+/// to 1/e, and at 2.90 ℓ to zero. The w_i are independent, uniform or nearly normal within ±3.56; the offset o is
 /// uniform, which makes the field stationary. Mean and correlation are exact; over one cell the
 /// variance of a field with a given offset rises and falls by 9 %.
 ///
 /// w_i is a hash of i and two keys of the run, in whole numbers below 2⁵² that double precision holds
 /// exactly: no table that repeats or has to be kept for each run, and the same bits in every
 /// language. Single precision cannot hold them. Valid for |x| < 500,000 h, 0 ≤ var < 1 (bounded,
-/// log-normal) or < 0.245 (Gaussian).
+/// log-normal) or < 0.2 (Gaussian).
 ///
 /// # Example
 /// ```
@@ -216,14 +216,24 @@ fn hash<R: Real>(number: R, first: R, second: R) -> R {
     wrapped(mixed(wrapped(twice + first)))
 }
 
-/// A hash as a number of mean 0, variance 1 and kurtosis 3, within ±3.001: the sum y of its two uniform
-/// halves, drawn out to a y + b y³.
+/// A hash as a nearly normal number within ±3.554: the sum of its two uniform halves, drawn out by the odd
+/// polynomial that brings their triangular distribution nearest to the normal one. Mean 0, variance 1,
+/// kurtosis 2.99; beyond 2 and 3 lie 4.50 and 0.28 % (normal: 4.55 and 0.27 %).
 #[inline(always)]
 fn nearly_normal<R: Real>(hash: R) -> R {
     const SCALE: f64 = 1.224_744_871_391_589 * 2.0 / HALVES; // variance 1: (3/2)^½ over 2¹²
+    const DRAWN_OUT: [f64; 4] = [
+        0.942_419_227_866_708_8,
+        0.004_373_246_125_051_813,
+        -0.007_143_688_514_209_779,
+        0.003_422_603_697_428_782,
+    ];
     let (upper, lower) = halves(hash);
     let y = (upper + lower) * R::constant(SCALE);
-    let drawn =
-        R::constant(0.063_639_820_949_537_28).mul_add(y * y, R::constant(0.843_299_113_084_874_8));
+    let square = y * y;
+    let mut drawn = R::constant(DRAWN_OUT[3]);
+    for &coefficient in DRAWN_OUT[..3].iter().rev() {
+        drawn = drawn.mul_add(square, R::constant(coefficient));
+    }
     y * drawn
 }

@@ -30,14 +30,14 @@ pub struct Variation<R> {
     pub normal_force: Option<NormalForce<R>>,
 }
 
-/// What varies the levels other than a field does.
-struct Meanwhile<'a, R> {
-    variation: &'a Variation<R>,
+/// What varies the levels other than a field does. By value: what a block refers to stays in memory.
+struct Meanwhile<R> {
+    variation: Variation<R>,
     x: R,
     t: R,
 }
 
-impl<R: Real> Block for Meanwhile<'_, R> {
+impl<R: Real> Block for Meanwhile<R> {
     type Output = R;
 
     #[inline(always)]
@@ -107,7 +107,7 @@ impl<R: Real> Variation<R> {
         if self.is_field_at_most() {
             return along;
         }
-        along * R::apart(Meanwhile { variation: self, x, t })
+        along * R::apart(Meanwhile { variation: *self, x, t })
     }
 
     /// The velocity in m/s that vibration adds across the motion at time `t` in s, if there is any.

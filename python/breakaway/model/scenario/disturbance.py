@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from breakaway.model.scenario.model import Model, Positive
 
-GAUSSIAN_VAR_MAX = 0.24
+GAUSSIAN_VAR_MAX = 0.2
 """Where a Gaussian field would no longer keep all levels above zero."""
 
 
@@ -18,8 +18,8 @@ class HeldDisturbance(Model):
 
     The paper says only "a random number (1 +- var)": neither distribution nor rate. Draws are
     keyed by seed, run and number of the draw. A factor that is redrawn by the clock stops a slip at
-    the next high draw, and waiting finds the lowest of many: use it to reproduce the paper. Friction
-    varies along the way: `FieldDisturbance`.
+    the next high draw, and waiting finds the lowest of many: use it to reproduce the paper.
+    Friction varies along the way: `FieldDisturbance`.
     """
 
     kind: Literal["paper_random_factor"] = "paper_random_factor"
@@ -91,11 +91,11 @@ class FieldDisturbance(Model):
     """Friction that varies along the way: levels times ``1 + s(x)``, s a stationary random field.
 
     A function of seed, run and place: waiting changes nothing, and a part that goes back meets the
-    same friction again. Its correlation is that of a quintic B-spline, 1/e at the correlation length
-    and zero from 2.9 times it on; its slope is continuous. By ``law``:
+    same friction again. Its correlation is that of a quintic B-spline, 1/e at the correlation
+    length and zero from 2.9 times it on; its slope is continuous. By ``law``:
 
     - ``bounded``: bell-shaped within ``-var <= s <= var``, with a standard deviation of 0.428 var.
-    - ``gaussian``: normal with the standard deviation var, but for ``abs(s) < 4.05 var``; var < 0.24.
+    - ``gaussian``: normal with the standard deviation var, but for ``abs(s) < 4.8 var``; var < 0.2.
     - ``log_normal``: ``1 + s = exp(var z - var**2 / 2)``, z normal.
 
     Examples
@@ -125,7 +125,7 @@ class FieldDisturbance(Model):
 
 
 def _defaults_unless_said(values: Any) -> Any:  # noqa: ANN401 - pydantic checks it afterwards
-    if not isinstance(values, Mapping):
+    if not isinstance(values, Mapping) or "correlation_length_m" in values:
         return values
     kind = values.get("kind", "paper_random_factor")
     if kind == "paper_random_factor" and not {"law", "bandwidth_hz"} & set(values):

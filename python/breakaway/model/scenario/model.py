@@ -146,9 +146,9 @@ def _descend(
     owner: type[BaseModel] | None = model
     candidates: list[type[BaseModel]] = [model]
     for key in path:
-        tagged = next((c for c in candidates if key in _tags(c)), None)
-        if tagged is not None and len(candidates) > 1:  # a union's tag comes right after its field
-            candidates = [tagged]
+        tagged = [candidate for candidate in candidates if key in _tags(candidate)]
+        if tagged and len(candidates) > 1:  # a union's tags come right after its field
+            candidates = tagged
             continue
         owner = next(
             (c for c in candidates if key in c.model_fields), candidates[0] if candidates else None

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from breakaway.model.scenario.model import Model, NotNegative, Positive
@@ -26,7 +27,7 @@ NotNegativePoints = Annotated[
 
 
 class NormalVibration(Model):
-    """Vibration normal to the joint: ``N + stiffness amplitude sin(2 pi (frequency t + phase))``."""
+    """Vibration normal to the joint: N + k a sin(2 pi (f t + phase)), k the contact's stiffness."""
 
     amplitude_m: NotNegative
     """How far the bodies approach and part, from their mean, in m."""
@@ -39,10 +40,10 @@ class NormalVibration(Model):
 
 
 class TransverseVibration(Model):
-    """Vibration in the joint's plane, across the motion: ``y = amplitude sin(2 pi (frequency t + phase))``.
+    """Vibration in the joint's plane, across the motion: y = a sin(2 pi (f t + phase)).
 
-    Friction opposes the velocity as a vector, so less of it is left along the motion. For laws with a
-    bristle in the plane: lugre and elasto_plastic.
+    Friction opposes the velocity as a vector, so less of it is left along the motion. For laws with
+    a bristle in the plane: lugre and elasto_plastic.
     """
 
     amplitude_m: NotNegative
@@ -53,82 +54,102 @@ class TransverseVibration(Model):
     """Phase at the start, in turns."""
 
 
-class _Followed(Model):
-    """What a course follows: the time, or the way."""
-
-    time_s: NotNegativePoints | None = None
-    """Times of its points since the start, rising, in s. Give this or travel_m."""
-    travel_m: Points | None = None
-    """Places of its points, the part's travel from its seat, rising, in m. Give this or time_s."""
-
-    @model_validator(mode="after")
-    def _follows_one(self) -> Self:
-        if (self.time_s is None) == (self.travel_m is None):
-            raise ValueError("time_s: and travel_m are both given or both left out; give one of them")
-        return self
-
-
-def _check_course(name: str, at: Sequence[float], values_name: str, values: Sequence[float]) -> None:
+def _check_course(
+    name: str, at: Sequence[float], values_name: str, values: Sequence[float]
+) -> None:
     """Refuse places that do not rise, or of which there are not as many as values."""
     if len(at) != len(values):
         raise ValueError(
-            f"{values_name}: has {len(values)} numbers and {name} {len(at)}; give one for each point"
+            f"{values_name}: {list(values)!r} has not as many numbers as {name} = {list(at)!r}; "
+            "give one for each point"
         )
     if any(later <= earlier for earlier, later in pairwise(at)):
-        raise ValueError(f"{name}: {list(at)!r} does not rise; give each point after the one before")
+        raise ValueError(
+            f"{name}: {list(at)!r} does not rise; give each point after the one before"
+        )
 
 
-def _of(model: _Followed) -> tuple[str, tuple[float, ...]]:
-    """Give the name and the places of what a course follows."""
-    if model.time_s is not None:
-        return "time_s", model.time_s
-    return "travel_m", model.travel_m or ()
-
-
-def core_course(name: str, at: Sequence[float], values: Sequence[float]) -> dict[str, Any]:
+def core_course(
+    over: Literal["time", "travel"], at: Sequence[float], values: Sequence[float]
+) -> dict[str, Any]:
     """Give a course under the names of the core, which has room for a fixed number of points."""
     rest = POINTS_MAX - len(at)
     return {
-        "over": name.rpartition("_")[0],
+        "over": over,
         "points": len(at),
         "at": [*at, *[at[-1]] * rest],
         "values": [*values, *[values[-1]] * rest],
     }
 
 
-class Drift(_Followed):
-    """A factor on the friction levels that changes slowly during a pull: heat, wear, dirt.
+class DriftOverTime(Model):
+    """A factor on the friction levels that changes slowly during a pull: heat, dirt, a lubricant.
 
     Straight lines between points; before the first and after the last it stays.
 
     Examples
     --------
-    >>> Drift(time_s=[0.0, 10.0], factor=[1.0, 0.8]).factor
+    >>> DriftOverTime(time_s=[0.0, 10.0], factor=[1.0, 0.8]).factor
     (1.0, 0.8)
 
     """
 
+    kind: Literal["over_time"] = "over_time"
+    """What the factor follows."""
+    time_s: NotNegativePoints
+    """Times of its points since the start, rising, in s."""
     factor: PositivePoints
     """The factor at each point."""
 
     @model_validator(mode="after")
     def _is_a_course(self) -> Self:
-        name, at = _of(self)
-        _check_course(name, at, "factor", self.factor)
+        _check_course("time_s", self.time_s, "factor", self.factor)
         return self
 
     def core(self) -> dict[str, Any]:
         """Give it under the names of the core."""
-        name, at = _of(self)
-        return core_course(name, at, self.factor)
+        return core_course("time", self.time_s, self.factor)
+
+
+class DriftOverTravel(Model):
+    """A factor on the friction levels that changes with the way: wear, a bore that widens.
+
+    Straight lines between points; before the first and after the last it stays.
+
+    Examples
+    --------
+    >>> DriftOverTravel(travel_m=[0.0, 0.1], factor=[1.0, 0.8]).kind
+    'over_travel'
+
+    """
+
+    kind: Literal["over_travel"] = "over_travel"
+    """What the factor follows."""
+    travel_m: Points
+    """Places of its points, the part's travel from its seat, rising, in m."""
+    factor: PositivePoints
+    """The factor at each point."""
+
+    @model_validator(mode="after")
+    def _is_a_course(self) -> Self:
+        _check_course("travel_m", self.travel_m, "factor", self.factor)
+        return self
+
+    def core(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        return core_course("travel", self.travel_m, self.factor)
+
+
+Drift = Annotated[DriftOverTime | DriftOverTravel, Field(discriminator="kind")]
+"""A drift, whatever it follows."""
 
 
 class _NormalForce(Model):
     """What every source of a normal force has."""
 
     nominal_n: Positive | None = None
-    """Normal force at which the joint's levels hold, in N: a level over it is a coefficient of friction.
-    Left out: the force at the start, without vibration."""
+    """Normal force at which the joint's levels hold, in N: a level over it is a coefficient of
+    friction. Left out: the force at the start, without vibration."""
     vibration: NormalVibration | None = None
     """Vibration normal to the joint. Left out: none."""
     transverse: TransverseVibration | None = None
@@ -167,44 +188,76 @@ class ConstantNormalForce(_NormalForce):
         return self.force_n
 
 
-class CourseNormalForce(_NormalForce, _Followed):
-    """A normal force that follows the time or the way, along straight lines between points.
+class NormalForceOverTime(_NormalForce):
+    """A normal force that follows the time, along straight lines between points.
 
     Examples
     --------
-    >>> CourseNormalForce(travel_m=[0.0, 0.1], force_n=[2000.0, 500.0]).start_n()
+    >>> NormalForceOverTime(time_s=[0.0, 2.0], force_n=[2000.0, 500.0]).start_n()
     2000.0
 
     """
 
-    kind: Literal["course"] = "course"
+    kind: Literal["over_time"] = "over_time"
     """Where the force comes from."""
+    time_s: NotNegativePoints
+    """Times of its points since the start, rising, in s."""
     force_n: NotNegativePoints
     """N at each point, in N."""
 
     @model_validator(mode="after")
     def _is_a_course(self) -> Self:
-        name, at = _of(self)
-        _check_course(name, at, "force_n", self.force_n)
+        _check_course("time_s", self.time_s, "force_n", self.force_n)
         return self
 
     def core_source(self) -> dict[str, Any]:
         """Give it under the names of the core."""
-        name, at = _of(self)
-        return {"constant_n": 0.0, "course_gain": 1.0, "course": core_course(name, at, self.force_n)}
+        course = core_course("time", self.time_s, self.force_n)
+        return {"constant_n": 0.0, "course_gain": 1.0, "course": course}
 
     def start_n(self) -> float:
         """Give the force at the start, in N."""
-        _, at = _of(self)
-        return _along(at, self.force_n, 0.0)
+        return _along(self.time_s, self.force_n)
 
 
-class SpringNormalForce(_NormalForce):
-    """Springs that clamp the part and relax as it moves: ``N = preload - stiffness opening x``.
+class NormalForceOverTravel(_NormalForce):
+    """A normal force that follows the way, along straight lines between points.
 
     Examples
     --------
-    >>> SpringNormalForce(preload_n=900.0, stiffness_n_per_m=1e5, opening_m_per_m=0.02).kind
+    >>> NormalForceOverTravel(travel_m=[0.0, 0.1], force_n=[2000.0, 500.0]).start_n()
+    2000.0
+
+    """
+
+    kind: Literal["over_travel"] = "over_travel"
+    """Where the force comes from."""
+    travel_m: Points
+    """Places of its points, the part's travel from its seat, rising, in m."""
+    force_n: NotNegativePoints
+    """N at each point, in N."""
+
+    @model_validator(mode="after")
+    def _is_a_course(self) -> Self:
+        _check_course("travel_m", self.travel_m, "force_n", self.force_n)
+        return self
+
+    def core_source(self) -> dict[str, Any]:
+        """Give it under the names of the core."""
+        course = core_course("travel", self.travel_m, self.force_n)
+        return {"constant_n": 0.0, "course_gain": 1.0, "course": course}
+
+    def start_n(self) -> float:
+        """Give the force at the start, in N."""
+        return _along(self.travel_m, self.force_n)
+
+
+class SpringNormalForce(_NormalForce):
+    """Springs that clamp the part and relax as it moves: ``N = preload - stiffness slope x``.
+
+    Examples
+    --------
+    >>> SpringNormalForce(preload_n=900.0, stiffness_n_per_m=1e5, slope=0.02).kind
     'springs'
 
     """
@@ -215,16 +268,16 @@ class SpringNormalForce(_NormalForce):
     """N at the seat, in N."""
     stiffness_n_per_m: Positive
     """Stiffness of the springs, in N/m."""
-    opening_m_per_m: float
-    """How far the springs relax for each meter of travel, such as the slope of a taper; below 0 they
-    tighten."""
+    slope: float
+    """How far the springs relax for each meter of travel, such as the slope of a taper; below 0
+    they tighten."""
 
     def core_source(self) -> dict[str, Any]:
         """Give it under the names of the core."""
         return {
             "constant_n": self.preload_n,
-            "course_gain": -self.stiffness_n_per_m * self.opening_m_per_m,
-            "course": core_course("travel_m", [0.0, 1e3], [0.0, 1e3]),
+            "course_gain": -self.stiffness_n_per_m * self.slope,
+            "course": core_course("travel", [0.0, 1e3], [0.0, 1e3]),
         }
 
     def start_n(self) -> float:
@@ -235,8 +288,8 @@ class SpringNormalForce(_NormalForce):
 class InterferenceNormalForce(_NormalForce):
     """A press fit: ``N = pressure area``.
 
-    The levels fall along the guide as the engaged area does, by equations (5) and (6); that is not said
-    here again.
+    The levels fall along the guide as the engaged area does, by equations (5) and (6); that is not
+    said here again.
 
     Examples
     --------
@@ -278,7 +331,7 @@ class TemperatureNormalForce(_NormalForce):
     preload_n: Positive
     """N where the temperature has not changed, in N."""
     expansion_n_per_k: float
-    """Change of N for each kelvin, in N/K; below 0 where heat loosens the fit."""
+    """Change of N with the temperature, in N/K; below 0 where heat loosens the fit."""
     time_s: NotNegativePoints
     """Times of the points since the start, rising, in s."""
     change_k: Points
@@ -294,23 +347,23 @@ class TemperatureNormalForce(_NormalForce):
         return {
             "constant_n": self.preload_n,
             "course_gain": self.expansion_n_per_k,
-            "course": core_course("time_s", self.time_s, self.change_k),
+            "course": core_course("time", self.time_s, self.change_k),
         }
 
     def start_n(self) -> float:
         """Give the force at the start, in N."""
-        return self.preload_n + self.expansion_n_per_k * _along(self.time_s, self.change_k, 0.0)
+        return self.preload_n + self.expansion_n_per_k * _along(self.time_s, self.change_k)
 
 
-def _along(at: Sequence[float], values: Sequence[float], place: float) -> float:
-    import numpy as np
-
-    return float(np.interp(place, at, values))
+def _along(at: Sequence[float], values: Sequence[float]) -> float:
+    """Give a course at the start."""
+    return float(np.interp(0.0, at, values))
 
 
 NormalForce = Annotated[
     ConstantNormalForce
-    | CourseNormalForce
+    | NormalForceOverTime
+    | NormalForceOverTravel
     | SpringNormalForce
     | InterferenceNormalForce
     | TemperatureNormalForce,

@@ -256,8 +256,8 @@ class Scenario(Model):
     def _check_law_is_in_plane(self) -> None:
         if not self.joint.in_plane:
             raise ValueError(
-                f"joint.normal_force.transverse: law {self.joint.law!r} does not say what vibration "
-                "across the motion does; give joint.law = 'lugre' or 'elasto_plastic'"
+                f"joint.normal_force.transverse: law {self.joint.law!r} does not say what "
+                "vibration across the motion does; give joint.law = 'lugre' or 'elasto_plastic'"
             )
         if self.timing.integrator == "rk4":
             raise ValueError(
