@@ -116,8 +116,52 @@ def test_a_frame(rough, monkeypatch):
         run.to_pandas()
 
 
+def too_fast(run):
+    return [said for said in run.warnings if said.startswith("the part moved at")]
+
+
+def test_a_run_beyond_the_passive_speed_is_warned_of(scenario):
+    """The reference peaks at 15/8 of 0.1 m in 0.5 s, and 4 F_c0 / c is 0.16 m/s."""
+    (said,) = bk.simulate(scenario).warnings
+    assert said == (
+        "the part moved at 0.375 m/s, above 4 g / c = 0.16 m/s at the seat: there bristles of "
+        "constant damping may push it; give joint.damping_velocity_m_per_s"
+    )
+    damped = bk.resolve(scenario).with_({"controller.gains.kd_n_s_per_m": 2500.0})  # no limit cycle
+    slow = {"reference.duration_s": 1.5, "timing.duration_s": 1.5}  # peaks at 0.125 m/s
+    silent = {"trace.every_samples": 0}
+    for held, changes in (
+        (scenario, {"joint.damping_velocity_m_per_s": 0.3}),
+        (scenario, silent),
+        (damped, slow),
+    ):
+        assert not too_fast(bk.simulate(held.with_(changes)))
+    assert too_fast(bk.simulate(damped))
+
+
+def test_a_part_that_is_free_may_be_fast(scenario):
+    damped = bk.resolve(scenario).with_(
+        {"controller.gains.kd_n_s_per_m": 2500.0, "joint.engagement_length_m": 0.005}
+    )
+    run = bk.simulate(damped)
+    velocity, held = run.trace["velocity_m_per_s"], run.trace["position_m"] < 0.005
+    assert abs(velocity).max() > 0.3 and abs(velocity[held]).max() > 0.13
+    assert not too_fast(run)
+
+
+def test_elements_that_attract_too_fast_are_warned_of(scenario):
+    """k_e F_c0 / c is 1.44e6 N/s."""
+    numbers = scenario.joint.model_dump(exclude={"law"})
+    for attraction, warned in ((1.4e6, False), (1.5e6, True)):
+        joint = bk.Gms(**numbers, attraction_n_per_s=attraction)
+        short = scenario.with_({"timing.duration_s": 0.01}, joint=joint)
+        said = bk.simulate(short).warnings
+        assert [one.startswith("joint.attraction_n_per_s = 1.5e+06") for one in said] == [
+            True
+        ] * warned
+
+
 def test_warnings(scenario):
-    assert bk.simulate(scenario).warnings == ()
     changes = {
         "limits.diverged_force_n": 400.0,
         "limits.breakaway_travel_m": 1e-5,

@@ -7,7 +7,8 @@ from breakaway.ask.studies import AgreementStudy, load_study, run_study
 from breakaway.ask.studies.files import parse_study
 
 HERE = Path(__file__).parent
-EFFECTS = "vibration", "disturbance"
+SHARES = {"vibration": (0.5, 0.7, 0.99), "disturbance": (0.7,)}
+"""Study -> elastic shares of the elasto-plastic bristle; what vibration is worth depends on it."""
 
 
 def asked(name: str, duration_s: float, until: str, elastic_share: float) -> AgreementStudy:
@@ -20,23 +21,30 @@ def asked(name: str, duration_s: float, until: str, elastic_share: float) -> Agr
     return parse_study(values)
 
 
+def ask(name: str, duration_s: float, until: str, elastic_share: float) -> None:
+    """Run a study into out/, or go on with it, and print what it found."""
+    study = asked(name, duration_s, until, elastic_share)
+    told = f"{duration_s:g}s_{until}_{elastic_share:g}"
+    done = run_study(study, out=Path("out") / f"{name}_{told}", resume=True)
+    print(f"smallest force, N ({name}, {duration_s:g} s, elastic share {elastic_share:g})")
+    for row in done.summary["tables"]["smallest"]:
+        spread = f" ({row['p05']:g} to {row['p95']:g})" if row["runs"] > 1 else ""
+        print(f"  {row['law']:17} {row['variant']:18} {row['median']:g}{spread}")
+    print("\n".join(done.summary["result"]), end="\n\n")
+
+
 def main() -> None:
-    """Run both studies into out/, or go on with them, and print what they found."""
+    """Run both studies, or one, as the command line says."""
     parser = ArgumentParser(description=__doc__)
-    parser.add_argument("--only", choices=EFFECTS, help="run one study alone")
+    parser.add_argument("--only", choices=SHARES, help="run one study alone")
     parser.add_argument("--duration-s", type=float, default=4.0, help="how long is pushed")
     parser.add_argument("--until", choices=("loose", "released"), default="loose")
-    parser.add_argument("--elastic-share", type=float, default=0.7, help="of the bristle")
+    parser.add_argument("--elastic-share", type=float, help="of the bristle, instead of several")
     given = parser.parse_args()
-    for name in [given.only] if given.only else EFFECTS:
-        study = asked(name, given.duration_s, given.until, given.elastic_share)
-        told = f"{given.duration_s:g}s_{given.until}_{given.elastic_share:g}"
-        done = run_study(study, out=Path("out") / f"{name}_{told}", resume=True)
-        print(f"smallest force, N ({name}, {given.duration_s:g} s)")
-        for row in done.summary["tables"]["smallest"]:
-            spread = f" ({row['p05']:g} to {row['p95']:g})" if row["runs"] > 1 else ""
-            print(f"  {row['law']:17} {row['variant']:18} {row['median']:g}{spread}")
-        print("\n".join(done.summary["result"]), end="\n\n")
+    for name in [given.only] if given.only else SHARES:
+        share = given.elastic_share
+        for elastic_share in SHARES[name] if share is None else [share]:
+            ask(name, given.duration_s, given.until, elastic_share)
 
 
 if __name__ == "__main__":

@@ -12,9 +12,10 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from breakaway.ask.reproduction.readings import READINGS
 from breakaway.ask.reproduction.report import reproduce
 from breakaway.ask.reproduction.rows import printed_row
-from breakaway.ask.reproduction.survey import DisturbanceRange
+from breakaway.ask.reproduction.survey import NAMES, DisturbanceRange
 from breakaway.ask.reproduction.tables import TABLE_2, table_2
 from breakaway.errors import OutputError
 
@@ -75,6 +76,11 @@ def test_findings_carry_the_known_figures(values):
     findings = values["findings"]
     assert "5.486e+08 <= ki = 8.239e+08" in findings["routh_hurwitz_with_vibration"]["ours"]
     assert "2.272e+09 > ki = 1.283e+09" in findings["routh_hurwitz_without_vibration"]["ours"]
+    assert "a pole +89.6 1/s" in findings["routh_hurwitz_with_vibration"]["ours"]
+    assert "Newton" in findings["routh_hurwitz_with_vibration"]["title"]
+    by_13 = findings["equation_13"]
+    assert by_13["agrees"] is True
+    assert "a pole -625 1/s with" in by_13["ours"] and "vibration released" in by_13["ours"]
     cycle = findings["limit_cycle"]["ours"]
     assert abs(float(re.search(r"about (\d+) Hz", cycle)[1]) - 285) < 10
     assert re.search(r"IAE 6\.9\de-07 m s, peak 44[67] N", cycle)
@@ -98,6 +104,20 @@ def test_figure_10_has_a_band_and_its_definition(values):
     assert np.all(np.diff(median) > 0)
     explained = values["findings"]["largest_stable_var_without_vibration"]["explanation"]
     assert "diverged" in explained and "uniform" in explained
+
+
+def test_no_reading_of_m2_gives_the_printed_limits(out, values):
+    page = (out / "report.html").read_text(encoding="utf-8")
+    for key, reading in READINGS.items():
+        assert values["findings"][f"reading_{key}"]["agrees"] is False
+        tried = values["readings"][key]
+        for control, name in NAMES.items():
+            assert f"{name}, {reading.name}: 32 runs" in page
+            rows = tried[control]
+            assert [row["var"] for row in rows] == [0.085, 0.125, 0.9]
+            all_diverge = control == "with_vibration"
+            assert [row["diverged"] for row in rows] == [32 * all_diverge] * 3
+            assert [row["released"] for row in rows] == [32 * (not all_diverge)] * 3
 
 
 def test_figure_10_is_a_table_too(out, values):

@@ -93,8 +93,9 @@ fn without_damper_the_loss_does_not_depend_on_frequency() {
     assert!(damped > 100.0 * change.abs(), "{damped:e}");
 }
 
-/// A known fault of LuGre: pulsed far below breakaway, the part creeps on with every pulse, as no
-/// real stuck joint does, and this flatters vibration. While the force rises to F the bristles
+/// A known fault of LuGre: pulsed far below breakaway, the part creeps on with every pulse, by
+/// micrometers where real joints slip by nanometers, and this flatters vibration along the motion.
+/// While the force rises to F the bristles
 /// yield by dz = (1 − k_e z/g) dx, while it falls by dz = (1 + k_e z/g) dx; between them remains
 ///
 /// ```text

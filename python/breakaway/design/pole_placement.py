@@ -48,6 +48,11 @@ def residual_n(joint: AnyJoint, mass_kg: float) -> float:
     return mass_kg * GRAVITY_M_PER_S2 if joint.residual_n is None else joint.residual_n
 
 
+def coulomb_fall_n_per_m(joint: AnyJoint, mass_kg: float) -> float:
+    """How fast Coulomb friction falls along the guide, m2 in N/m: equation (12)."""
+    return (joint.coulomb_n - residual_n(joint, mass_kg)) / joint.engagement_length_m
+
+
 def with_residual(joint: AnyJoint, mass_kg: float) -> AnyJoint:
     """Give the joint with its residual force as a number."""
     return joint.model_copy(update={"residual_n": residual_n(joint, mass_kg)})
@@ -73,6 +78,10 @@ def pole_placement(
 
     Misprints corrected: the paper prints w**2 twice in the static kp, and ``- eps`` in place of
     ``- c`` in the static kd; (11) lacks an s.
+
+    The dynamic kp is the printed one, with the wrong sign of (13): R = F_c0 - m2 x puts -m2 x on
+    the left, which asks for + 1. That is 2 of 12,600 to 19,200 in the paper, and Table II does not
+    tell the two apart.
 
     Parameters
     ----------
@@ -136,7 +145,7 @@ def pole_placement(
         )
     a, m = pole_per_s, mass_kg
     slowness = damping_ratio * settling_time_s
-    m2 = (joint.coulomb_n - end_n) / joint.engagement_length_m
+    m2 = coulomb_fall_n_per_m(joint, mass_kg)
     if slowness == 0.0 or m2 == 0.0:
         raise ScenarioError(_NO_NUMBERS)
     w = 4.0 / slowness

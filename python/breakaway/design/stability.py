@@ -59,6 +59,9 @@ def stability(gains: PidGains, joint: AnyJoint, mass_kg: float) -> Stability:
 
     Notes
     -----
+    Sliding is Newton's law ``m x'' = F - R`` with constant friction. The paper's (13) is another
+    plant: it multiplies the force by m2, and its verdict on the same gains may differ.
+
     Not modeled: sampling and hold, delay, the transition between the regimes. The verdict for
     sliding ignores the Stribeck slope, which `Stability.stribeck` compares with kd.
 

@@ -155,7 +155,7 @@ class Run(OneLine, ByValue):
         'peak force 400.27 N is above limits.diverged_force_n = 400 N'
 
         """
-        return tuple(warnings_of(self.scenario, self.outcome, self.metrics))
+        return tuple(warnings_of(self.scenario, self.outcome, self.metrics, self.trace))
 
     def to_xarray(self) -> xarray.Dataset:
         """Give the trace as a dataset over ``t_s``, with units, and outcome and seed as attributes.

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
+from breakaway.model.friction.passivity import passive_attraction_n_per_s, passive_speed
 from breakaway.model.scenario.controller import Gains, gain_sets
+from breakaway.model.scenario.joint import Gms
 from breakaway.model.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     from breakaway.run.finished import Outcome, RunMetrics
 
+Trace = Mapping[str, NDArray[np.float64]]
 
-def warnings_of(scenario: Scenario, outcome: Outcome, metrics: RunMetrics) -> Iterator[str]:
+
+def warnings_of(
+    scenario: Scenario, outcome: Outcome, metrics: RunMetrics, trace: Trace
+) -> Iterator[str]:
     """Say what is doubtful about a run of a resolved scenario, one sentence each."""
     if outcome == "diverged":
         yield from _diverged(scenario, metrics)
     yield from _stuck_but_loose(scenario)
     yield from _negative_gains(scenario)
+    yield from _bristles_push(scenario, trace)
     let_go_early = metrics.time_to_breakaway_s > 0 and metrics.peak_over_breakaway < 1
     if scenario.joint.law == "lugre" and let_go_early:
         yield (
@@ -56,3 +66,31 @@ def _negative_gains(scenario: Scenario) -> Iterator[str]:
                 f"controller.{which}: a gain is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
                 f"{gains.kd_n_s_per_m:.4g} N s/m; see `breakaway design`"
             )
+
+
+def _bristles_push(scenario: Scenario, trace: Trace) -> Iterator[str]:
+    """Say where constant damping lets friction give back more than it takes.
+
+    The speed is the part's own, which the trace has and no metric; that of a reference says little
+    of a part that jumps. A run without a trace is not judged by it.
+    """
+    joint = scenario.joint
+    safe = passive_speed(joint)
+    if safe is not None and trace and (speed := _fastest_within(scenario, trace)) > safe:
+        yield (
+            f"the part moved at {speed:.3g} m/s, above 4 g / c = {safe:.3g} m/s at the seat: there "
+            "bristles of constant damping may push it; give joint.damping_velocity_m_per_s"
+        )
+    slow = passive_attraction_n_per_s(joint)
+    if isinstance(joint, Gms) and slow is not None and joint.attraction_n_per_s > slow:
+        yield (
+            f"joint.attraction_n_per_s = {joint.attraction_n_per_s:.4g} is above k_e g / c = "
+            f"{slow:.4g} N/s at the seat: slipping elements may push the part; give at most that"
+        )
+
+
+def _fastest_within(scenario: Scenario, trace: Trace) -> float:
+    """Give the largest speed of the part while the joint holds it, in m/s."""
+    held = trace["position_m"] < scenario.joint.engagement_length_m
+    speed = np.abs(trace["velocity_m_per_s"])
+    return float(np.max(speed, initial=0.0, where=held & np.isfinite(speed)))

@@ -22,8 +22,10 @@ use crate::variation::speed;
 ///
 /// Equation (2) is printed without `k_e`; the factor is that of Canudas de Wit, Olsson,
 /// Åström and Lischinsky, IEEE TAC 40(3), 1995. Valid for positive levels, stiffness, velocities
-/// and length. Two faults of the law flatter vibration: it drifts below breakaway
-/// under vibration, and its breakaway force depends on the loading rate.
+/// and length. Two faults of the law flatter vibration along the motion: its breakaway force depends on
+/// the loading rate, and below breakaway it drifts without end, by −g/k_e ln(1 − (F/g)²) in each slow
+/// pulse of F. Slip of nanometers to less than a micrometer, which locks up, is measured (Yang, Zhang
+/// and Marder, PNAS 2008).
 ///
 /// With a constant c the law is no passive friction: at speeds where c |v| exceeds 4 g a bristle
 /// stretched beyond its level can push the part. With a damping velocity (Olsson, thesis, Lund

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.ask.reproduction.figure_10 import PRINTED_VAR
+from breakaway.ask.reproduction.readings import READINGS, Reading, equation_13, velocity_gain
 from breakaway.ask.reproduction.rows import Row
 from breakaway.ask.reproduction.runs import Runs
-from breakaway.ask.reproduction.survey import CONFIDENCE, DisturbanceRange
+from breakaway.ask.reproduction.survey import CONFIDENCE, NAMES, DisturbanceRange
 from breakaway.ask.reproduction.tables import designed
-from breakaway.design.stability import stability
+from breakaway.design.pole_placement import coulomb_fall_n_per_m
+from breakaway.design.stability import LoopStability, stability
 from breakaway.model.scenario.files import load_scenario
 from breakaway.run.finished import Run
 
@@ -73,6 +75,14 @@ def misprints() -> list[Finding]:
             "Only these give Table II.",
         ),
         misprint(
+            "equation_13",
+            "Equation (13) has a wrong sign, and the dynamic gains with it",
+            "(1 + kp_d) m₂/m s, kp_d = (ω² + 2 a ε ω) m/m₂ − 1",
+            "(kp_d − 1) m₂/m s, kp_d = (ω² + 2 a ε ω) m/m₂ + 1",
+            "m x'' = m₂ u − R with R = F_c0 − m₂ x, equation (6), puts −m₂ x on the left; the "
+            f"force is m₂ u. Table II does not tell which was meant: {_kp_with_both_signs()}.",
+        ),
+        misprint(
             "units",
             "Table I gives the Stribeck velocity in m/s², and Table II carries its caption",
             "0.09 m/s²",
@@ -80,6 +90,20 @@ def misprints() -> list[Finding]:
             "v_s divides a velocity in equation (3).",
         ),
     ]
+
+
+def _kp_with_both_signs() -> str:
+    """Say what the sign of (13) changes in the proportional gains of Table II."""
+    scenario = load_scenario("paper_as_computed")
+    said = []
+    for control, words in (("without_vibration", "without"), ("with_vibration", "with")):
+        gains = designed(scenario, control)
+        printed, total = gains.dynamic.kp, gains.total.kp
+        said.append(
+            f"{words} vibration kp_d is {printed:.1f} as printed, {printed + 2.0:.1f} put right, "
+            f"which changes the total by {0.9 * 2.0 / total:.1e} of itself"
+        )
+    return "; ".join(said)
 
 
 def table_1_and_table_2(rows: list[Row]) -> Finding:
@@ -103,11 +127,13 @@ def simulated(runs: Runs) -> list[Finding]:
     """Findings from the simulations."""
     return [
         *_routh_hurwitz(runs),
+        _equation_13(runs),
         _known_value(runs),
         _limit_cycle(runs),
         _as_printed(runs),
         _stable_range(runs, "without_vibration"),
         _stable_range(runs, "with_vibration"),
+        *(_reading(runs, key) for key in READINGS),
         _smoother(runs),
         _jolt(runs),
     ]
@@ -128,19 +154,43 @@ def _routh_hurwitz(runs: Runs) -> list[Finding]:
             Finding(
                 f"routh_hurwitz_{control}",
                 f"The gains {words} are {'stable' if verdict.stable else 'unstable'} while the "
-                "part slides",
+                "part slides, by Newton's m x'' = F − R",
                 "stable up to a disturbance range",
-                f"{verdict.reason}; as a plain PID on an ideal actuator, "
-                f"undisturbed, the run {_ending(run)}",
-                "kp kd / m > ki"
+                f"{verdict.reason}, largest real part of a pole {_rightmost(verdict)}; as a plain "
+                f"PID on an ideal actuator, undisturbed, the run {_ending(run)}",
+                f"kp kd / m > ki, largest real part {_rightmost(verdict)}"
                 if verdict.stable
-                else f"kp kd / m < ki; as a plain PID {_ending(run)}",
+                else f"kp kd / m < ki, largest real part {_rightmost(verdict)}; as a plain PID "
+                f"{_ending(run)}",
                 verdict.stable,
                 "Routh-Hurwitz for s³ + kd/m s² + kp/m s + ki/m: stable if kp kd / m > ki. "
                 "Gating the force by a duty cycle scales both sides and does not help.",
             )
         )
     return findings
+
+
+def _rightmost(loop: LoopStability) -> str:
+    """Give the largest real part of a pole."""
+    return f"{max(pole.real for pole in loop.poles_per_s):+.3g} 1/s"
+
+
+def _equation_13(runs: Runs) -> Finding:
+    scenario = runs.oracle.scenario
+    m2 = coulomb_fall_n_per_m(scenario.joint, scenario.part.mass_kg)
+    without, with_it = (equation_13(c) for c in ("without_vibration", "with_vibration"))
+    return Finding(
+        "equation_13",
+        "By the paper's (13), whose loop is multiplied by m₂, the gains with vibration are stable",
+        "s³ + kd m₂/m s² + (1 + kp) m₂/m s + ki m₂/m",
+        f"largest real part of a pole {_rightmost(with_it)} with the gains with vibration, "
+        f"{_rightmost(without)} with those without; multiplied by m₂, as a plain PID, undisturbed, "
+        f"the run with the gains with vibration {_ending(runs.plain_vibration_gains_times_m2)}",
+        f"largest real part {_rightmost(with_it)}",
+        with_it.stable,
+        f"m₂ = {m2:.1f} N/m, equation (12), is a gain in (13) and in the paper's block diagram. "
+        "Table II's totals taken in N/m, N s/m and N/(m s) act on Newton's law without it.",
+    )
 
 
 def _known_value(runs: Runs) -> Finding:
@@ -222,6 +272,38 @@ def _stable_range(runs: Runs, control: str) -> Finding:
         "diverged (|e| above l_f / 2 or |F| above 20 F_s0); w uniform on [-1, 1], redrawn every "
         "0.1 ms. The paper names neither distribution, nor rate, nor number of runs.",
     )
+
+
+def _reading(runs: Runs, key: str) -> Finding:
+    """Say what the loop survives if m2 multiplies more than nothing."""
+    reading, ranges = READINGS[key], runs.readings[key]
+    plain = ranges["without_vibration"]
+    without, literal, bounded = (
+        _survived(ranges[control].largest_stable_var, plain.var[-1]) for control in NAMES
+    )
+    iae_m_s = np.median(plain.iae_m_s[plain.level(PRINTED_VAR["without_vibration"])])
+    return Finding(
+        f"reading_{key}",
+        f"With {reading.name} the printed limits do not come out either",
+        "; ".join(f"var = {var:.1%} {c.replace('_', ' ')}" for c, var in PRINTED_VAR.items()),
+        f"without vibration {without}; with vibration, as printed, {literal}; bounded {bounded}; "
+        f"median IAE without vibration {iae_m_s:.2e} m s at var = 12.5%",
+        f"without {without}; with {literal}; bounded {bounded}",
+        all(ranges[c].largest_stable_var == var for c, var in PRINTED_VAR.items()),
+        f"{plain.runs} runs at each of var = {', '.join(f'{var:.1%}' for var in plain.var)}, with "
+        f"the draws of figure 10. {_sampling(reading)}",
+    )
+
+
+def _sampling(reading: Reading) -> str:
+    """Say how often the controller has to be sampled."""
+    usual_s = load_scenario("paper_as_computed").timing.control_period_s
+    at, usually = (
+        f"{velocity_gain(reading, period_s):.2g} at {1e-6 / period_s:g} MHz"
+        for period_s in (reading.control_period_s, usual_s)
+    )
+    said = at if at == usually else f"{at} as here, {usually}"
+    return f"kd T_s / m is {said}; above 2 a sampled loop diverges."
 
 
 def _diverged_near(survey: DisturbanceRange, printed: float) -> str:

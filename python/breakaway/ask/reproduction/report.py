@@ -16,6 +16,7 @@ from breakaway.ask.reproduction.findings import (
     simulated,
     table_1_and_table_2,
 )
+from breakaway.ask.reproduction.readings import READINGS
 from breakaway.ask.reproduction.rows import Row
 from breakaway.ask.reproduction.runs import Runs, simulate_all
 from breakaway.ask.reproduction.survey import (
@@ -94,7 +95,7 @@ def reproduce(
         glance = _at_a_glance(rows, from_table_1, findings)
         page = _page(rows, from_table_1, findings, figures, glance, runs, staging)
         (staging / "report.html").write_text(page, encoding="utf-8")
-        values = _json(rows + from_table_1, findings, figures)
+        values = _json(rows + from_table_1, findings, figures, runs)
         (staging / "reproduction.json").write_text(
             json.dumps(values, indent=1, allow_nan=False), encoding="utf-8"
         )
@@ -184,10 +185,19 @@ def _page(
         seed=runs.oracle.seed,
         folder=folder,
         method=_method(),
-        survey=runs.ranges,
-        names=NAMES,
+        surveys=_surveys(runs),
         definition=_definition(runs.ranges["without_vibration"]),
     )
+
+
+def _surveys(runs: Runs) -> dict[str, DisturbanceRange]:
+    """Figure 10 and the readings of its loop, by what each is called."""
+    figure_10 = {NAMES[control]: survey for control, survey in runs.ranges.items()}
+    return figure_10 | {
+        f"{NAMES[control]}, {READINGS[key].name}": survey
+        for key, ranges in runs.readings.items()
+        for control, survey in ranges.items()
+    }
 
 
 def _method() -> list[str]:
@@ -221,17 +231,26 @@ def _definition(survey: DisturbanceRange) -> list[str]:
         "each level by itself.",
         "Vibration: as printed it diverges at every level, so its IAE is not drawn; what is "
         "drawn is the bounded reading, whose three additions are not in the paper.",
+        "Force: the PID's output, in N. Equation (13) multiplies it by m₂; the last tables read it "
+        "so, for the whole loop and for the dynamic gains alone, at a few levels.",
     ]
 
 
 def _json(
-    rows: Sequence[Row], findings: Sequence[Finding], figures: Sequence[ReproducedFigure]
+    rows: Sequence[Row],
+    findings: Sequence[Finding],
+    figures: Sequence[ReproducedFigure],
+    runs: Runs,
 ) -> dict[str, object]:
     values: dict[str, object] = {row.key: row.to_dict() for row in rows}
     values["findings"] = {finding.key: finding.to_dict() for finding in findings}
     values["figures"] = {
         figure.key: {"title": figure.title, "caption": figure.caption, "data": figure.data}
         for figure in figures
+    }
+    values["readings"] = {
+        key: {control: survey.rows() for control, survey in ranges.items()}
+        for key, ranges in runs.readings.items()
     }
     values["version"] = __version__
     return values

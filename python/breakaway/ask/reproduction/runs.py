@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from breakaway.ask.reproduction.readings import READINGS, try_readings, with_m2
 from breakaway.ask.reproduction.survey import (
     CONTROLS,
     QUICK_SEEDS,
@@ -38,10 +39,14 @@ class Runs:
     """Tables I and II as printed, without vibration."""
     plain_vibration_gains: Run
     """Table II's gains with vibration as a plain PID on an ideal actuator."""
+    plain_vibration_gains_times_m2: Run
+    """The same gains multiplied by m2, as in equation (13)."""
     half_push: Mapping[str, Run]
     """A constant push of half of F_s0 at var = 30 %, by what the disturbance acts on."""
     ranges: Mapping[str, DisturbanceRange]
     """IAE against var, by control."""
+    readings: Mapping[str, Mapping[str, DisturbanceRange]]
+    """The same at a few levels, by reading of what m2 multiplies and control."""
 
 
 def simulate_all(progress: Progress, ranges: Mapping[str, DisturbanceRange] | None = None) -> Runs:
@@ -60,6 +65,9 @@ def simulate_all(progress: Progress, ranges: Mapping[str, DisturbanceRange] | No
     oracle = simulate(base.with_({"timing.integrator": "rk4", "timing.steps_per_period": 100}))
     progress("variations")
     vibration_gains = PolePlacement(settling_time_s=5.2e-4, damping_ratio=1.2, pole_per_s=200.0)
+    plain = base.with_(controller=Pid(gains=vibration_gains))
+    progress("readings of what m₂ multiplies")
+    readings = try_readings()
     if ranges is None:
         progress(f"IAE against var: {QUICK_SEEDS} runs at each level")
         ranges = {control: disturbance_range(s) for control, s in scenarios.items()}
@@ -69,9 +77,11 @@ def simulate_all(progress: Progress, ranges: Mapping[str, DisturbanceRange] | No
         oracle=oracle,
         damped=simulate(with_derivative_gain(base, 2500.0)),
         as_printed=simulate(load_scenario("paper_as_printed")),
-        plain_vibration_gains=simulate(base.with_(controller=Pid(gains=vibration_gains))),
+        plain_vibration_gains=simulate(plain),
+        plain_vibration_gains_times_m2=simulate(with_m2(plain, READINGS["m2_whole_loop"])),
         half_push=constant_push(base),
         ranges=ranges,
+        readings=readings,
     )
 
 

@@ -36,7 +36,8 @@ class LawNumbers(Model):
     """What some friction laws need besides the quantities of a part."""
 
     elastic_share: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.7
-    """Elasto-plastic: share of the steady deflection that is elastic."""
+    """Elasto-plastic: share of the steady deflection that is elastic; assumed. What vibration is
+    worth under this law depends on it (docs/agreement.md)."""
     gms_elements: Annotated[int, Field(ge=4, le=ELEMENTS_MAX)] = 4
     """Generalized Maxwell-slip: number of elements."""
     gms_lag_s: Positive = 1e-3
