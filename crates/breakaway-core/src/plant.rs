@@ -186,7 +186,11 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let k = (R::constant(0.5) * h).named("half_step_s");
         let x_mid = k.mul_add(v, x).named("middle_m");
         let level_factor = self.level_factor(&mut state.cell, x_mid, t + k);
-        let settled = self.joint.settle(state.joint(), x, v, level_factor);
+        let mut settled = self.joint.settle(state.joint(), x, v, level_factor);
+        if self.variation.levels_read_time() {
+            settled = self.joint.let_go(settled, &mut state.elements, x_mid, level_factor);
+            state.transverse_bristle_m = settled.transverse_bristle_m;
+        }
         (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
         match integrator {
             Integrator::LinearlyImplicitMidpoint => {
