@@ -141,7 +141,7 @@ STACK = bk.Piezo(
 )
 
 
-def axis(tip):
+def axis(tip, backlash_m=None):
     return bk.FeedAxis(
         speed_max_m_per_s=0.2,
         acceleration_max_m_per_s2=200.0,
@@ -149,7 +149,9 @@ def axis(tip):
         damping_n_s_per_m=8e3,
         tool_mass_kg=2.0,
         tip=tip,
-        contact=bk.Contact(stiffness_n_per_m=1e8, damping_n_s_per_m=3e3, gap_m=1e-6),
+        contact=bk.Contact(
+            stiffness_n_per_m=1e8, damping_n_s_per_m=3e3, gap_m=1e-6, backlash_m=backlash_m
+        ),
     )
 
 
@@ -224,6 +226,7 @@ PUSHED = {
     "axis-steady": ("lugre", axis(bk.RigidTip()), bk.SteadyFeed(**FEED), {}),
     "stack-vibrated": ("two_region", axis(STACK), VIBRATED, {}),
     "stack-vibrated-seen": ("gms", axis(STACK), VIBRATED, {"sensors": SENSORS, "watch": WATCH}),
+    "grip-vibrated": ("lugre", axis(STACK, 3e-6), VIBRATED, {}),
 }
 MORE_JOINTS = {
     "elasto_plastic": bk.ElastoPlastic(
@@ -360,7 +363,10 @@ def test_cases_end_in_every_way():
 
 
 ALONE = (
-    {name: CASES[name] for name in ("force-ramp-seen", "force-impacts", "stack-vibrated")}
+    {
+        name: CASES[name]
+        for name in ("force-ramp-seen", "force-impacts", "stack-vibrated", "grip-vibrated")
+    }
     | {
         kind: next(s for name, s in CASES.items() if name.startswith(kind))
         for kind in ("lugre-pid", "lugre-fm", "lugre-two", "two_region-pid", "two_region-two")
@@ -422,6 +428,7 @@ def test_numbers_are_found_in_every_room():
         "actuator.bandwidth_hz",
         "actuator.stiffness_n_per_m",
         "actuator.contact.gap_m",
+        "actuator.contact.backlash_m",
         "actuator.tip.hysteresis_share",
         "sensors.position.noise_rms_m",
         "sensors.force.quantum_n",

@@ -185,6 +185,9 @@ def plants() -> dict[str, bk.Scenario]:
         sensors=SENSORS,
         watch=WATCH,
     )
+    found["axis_grip"] = found["axis_stack_sensed"].with_(
+        {"actuator.contact.backlash_m": 4e-6, "timing.steps_per_period": 1}
+    )
     found["axis_gms"] = found["axis"].with_(joint=joints["gms"])
     return found
 

@@ -98,6 +98,15 @@ def test_an_actuator_that_does_not_heed_its_controller(paper):
     assert paper.with_(actuator=stacked, controller=vibrated).controller == vibrated
 
 
+def test_a_grip_that_starts_outside_its_play(paper):
+    axis = bk.load_method("steady_feed").actuator
+    fed = paper.with_(actuator=axis, controller=bk.SteadyFeed(**FEED))
+    words = ("actuator.contact.gap_m: 2e-05", "backlash_m = 1e-05", "starts within its play")
+    refused(fed, {"actuator.contact.gap_m": 2e-5, "actuator.contact.backlash_m": 1e-5}, *words)
+    held = fed.with_({"actuator.contact.gap_m": 0.0, "actuator.contact.backlash_m": 0.0})
+    assert held.actuator.contact.backlash_m == 0.0
+
+
 RAMP = {"kind": "force_ramp", "rate_n_per_s": 1e4, "travel_m": 0.1}
 IMPACTS = {"kind": "timed_impacts", "travel_m": 0.1, "target_s": 8.0}
 PULSES = {

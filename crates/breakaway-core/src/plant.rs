@@ -91,42 +91,60 @@ pub enum Integrator {
 /// What pushes the part during a step.
 ///
 /// ```text
-/// F = F_0                          rigid: whatever the part does
-/// F = max(0, F_0 − S v_m)          through something compliant in a contact that cannot pull
+/// F = F_0                                               rigid: whatever the part does
+/// F = max(0, F_0 − S v_m)                               through something compliant that cannot pull
+/// F = max(0, F_0 − S v_m) + min(0, F_b − S v_m)         through a grip with play: F_b ≥ F_0
 /// ```
 ///
 /// v_m is the part's velocity at the middle of the step, F_0 the force there if the part stood
 /// still, and S ≥ 0 how much of it each m/s takes away. A spring of k N/m between part and pusher
-/// has S = k h / 2, a damper its own constant.
+/// has S = k h / 2, a damper its own constant. F_b is the force of the face that pulls, as F_0 that of the
+/// one that pushes: play of b m makes F_b larger by k b, and without play they are one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push<R> {
     /// F_0 in N.
     pub force_n: R,
     /// S in N s/m; none for a rigid push.
     pub yielding_n_s_per_m: Maybe<R>,
+    /// F_b in N; none for what cannot pull.
+    pub pull_n: Maybe<R>,
 }
 
 impl<R: Real> Push<R> {
     /// The same force whatever the part does.
     #[inline(always)]
     pub fn rigid(force_n: R) -> Self {
-        Self { force_n, yielding_n_s_per_m: Maybe::none() }
+        Self { force_n, yielding_n_s_per_m: Maybe::none(), pull_n: Maybe::none() }
+    }
+
+    /// A force that falls with the part's velocity, and cannot pull.
+    #[inline(always)]
+    pub fn yielding(force_n: R, yielding_n_s_per_m: R) -> Self {
+        let yielding_n_s_per_m = Maybe::some(yielding_n_s_per_m);
+        Self { force_n, yielding_n_s_per_m, pull_n: Maybe::none() }
     }
 
     /// F in N on a part whose middle velocity is v_free + Y F:
     ///
     /// ```text
-    /// F = max(0, (F_0 − S v_free) / (1 + S Y))
+    /// F = max(0, (F_0 − S v_free) / (1 + S Y)) + min(0, (F_b − S v_free) / (1 + S Y))
     /// ```
     ///
-    /// This is the one F that agrees with both, since F_0 − S v_m falls with F.
+    /// This is the one F that agrees with both, since neither face's force rises with F.
     #[inline(always)]
-    fn meets(&self, free_m_per_s: R, mobility_m_per_n_s: R) -> R {
+    pub fn meets(&self, free_m_per_s: R, mobility_m_per_n_s: R) -> R {
         match self.yielding_n_s_per_m.get() {
             Some(&s) => {
                 let stopped = s.mul_add(mobility_m_per_n_s, R::one()).named("stopped");
                 let met_n = (-s).mul_add(free_m_per_s, self.force_n) / stopped;
-                R::zero().max(met_n.named("met_n")).named("contact_n")
+                let pushed_n = R::zero().max(met_n.named("met_n")).named("contact_n");
+                match self.pull_n.get() {
+                    Some(&pull_n) => {
+                        let held_n = (-s).mul_add(free_m_per_s, pull_n) / stopped;
+                        (pushed_n + R::zero().min(held_n.named("held_n"))).named("grip_n")
+                    }
+                    None => pushed_n,
+                }
             }
             None => self.force_n,
         }
@@ -186,7 +204,11 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let k = (R::constant(0.5) * h).named("half_step_s");
         let x_mid = k.mul_add(v, x).named("middle_m");
         let level_factor = self.level_factor(&mut state.cell, x_mid, t + k);
-        let settled = self.joint.settle(state.joint(), x, v, level_factor);
+        let mut settled = self.joint.settle(state.joint(), x, v, level_factor);
+        if self.variation.levels_read_time() {
+            settled = self.joint.let_go(settled, &mut state.elements, x_mid, level_factor);
+            state.transverse_bristle_m = settled.transverse_bristle_m;
+        }
         (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
         match integrator {
             Integrator::LinearlyImplicitMidpoint => {

@@ -4,109 +4,25 @@ mod laws;
 mod support;
 
 use breakaway_core::actuator::{
-    Actuator, ActuatorState, Command, Contact, Effort, FeedAxis, ForceActuator, Piezo, PushOnly,
-    Tip,
+    Actuator, Command, Contact, Effort, FeedAxis, ForceActuator, Piezo, PushOnly,
 };
 use breakaway_core::control::{Controller, ForceRamp, SteadyFeed};
 use breakaway_core::disturbance::Factors;
 use breakaway_core::extraction::Sample;
 use breakaway_core::joint::{Joint, Lugre};
-use breakaway_core::plant::{Integrator, Moved, Plant, PlantState};
 use breakaway_core::test_models::{paper_as_computed, paper_joint};
-use breakaway_core::variation::Variation;
 use breakaway_core::{Draws, Extraction, ExtractionState, Maybe};
 use std::f64::consts::PI;
+use support::bench::{Bench, STACK, axis, feed, stack, with_stack};
 use support::{UNDISTURBED, random};
 
 const FORCE: ForceActuator<f64> =
     ForceActuator { force_max_n: 1000.0, bandwidth_hz: 500.0, force_rate_max_n_per_s: 1e9 };
 
-/// About a stack of 10 x 10 x 36 mm and a fast amplifier.
-const STACK: Piezo<f64> = Piezo {
-    stroke_m: 38e-6,
-    stiffness_n_per_m: 1e8,
-    tip_mass_kg: 0.01,
-    damping_n_s_per_m: 200.0,
-    hysteresis_share: 0.4,
-    preload_n: 800.0,
-    capacitance_f: 13e-6,
-    loss_tangent: 0.015,
-    voltage_max_v: 120.0,
-    current_max_a: 10.0,
-    amplifier_bandwidth_hz: 5000.0,
-};
-
-const AXIS: FeedAxis<f64> = FeedAxis {
-    speed_max_m_per_s: 0.05,
-    acceleration_max_m_per_s2: 10.0,
-    stiffness_n_per_m: 3e7,
-    damping_n_s_per_m: 8e3,
-    tool_mass_kg: 3.0,
-    tip: Tip::Rigid,
-    contact: Contact { stiffness_n_per_m: 2e8, damping_n_s_per_m: 3e3, gap_m: 1e-5 },
-};
-
-fn with_stack(piezo: Piezo<f64>) -> FeedAxis<f64> {
-    FeedAxis { tip: Tip::Piezo(piezo), ..AXIS }
-}
-
-fn stack(share: f64) -> Command<f64> {
-    Command { force_n: 0.0, feed_m_per_s: 0.0, stack_share: share }
-}
-
-fn feed(speed: f64) -> Command<f64> {
-    Command { force_n: 0.0, feed_m_per_s: speed, stack_share: 0.0 }
-}
-
-/// An actuator before a part in a joint, without a loop around them.
-struct Bench {
-    actuator: Actuator<f64>,
-    state: ActuatorState<f64>,
-    joint: Joint<f64>,
-    mass_kg: f64,
-    part: PlantState<f64>,
-}
-
-impl Bench {
-    fn new(actuator: Actuator<f64>, joint: Joint<f64>) -> Self {
-        let (state, part) = (ActuatorState::at_rest(), PlantState::at_rest());
-        Self { actuator, state, joint, mass_kg: 1.0, part }
-    }
-
-    /// The part cannot move: gives the force on it, and the effort.
-    fn hold(&mut self, command: &Command<f64>, h: f64) -> (f64, Effort<f64>) {
-        let driven = self.actuator.drive(&mut self.state, command, self.part.position_m, h);
-        let push = match driven.push.yielding_n_s_per_m.get() {
-            Some(_) => driven.push.force_n.max(0.0),
-            None => driven.push.force_n,
-        };
-        (push, self.actuator.settle(&mut self.state, &driven, push, 0.0, h))
-    }
-
-    /// The part moves.
-    fn step(
-        &mut self,
-        command: &Command<f64>,
-        factors: Factors<f64>,
-        h: f64,
-    ) -> (Moved<f64>, Effort<f64>) {
-        let driven = self.actuator.drive(&mut self.state, command, self.part.position_m, h);
-        let push = driven.push;
-        let plant = Plant {
-            joint: &self.joint,
-            mass_kg: self.mass_kg,
-            push,
-            factors,
-            variation: &Variation::none(),
-        };
-        let moved = plant.step(Integrator::LinearlyImplicitMidpoint, &mut self.part, 0.0, h);
-        let (force_n, v) = (moved.push_force_n, moved.mean_velocity_m_per_s);
-        (moved, self.actuator.settle(&mut self.state, &driven, force_n, v, h))
-    }
-
-    fn hold_long(&mut self, command: &Command<f64>, h: f64, steps: u32) -> f64 {
-        (0..steps).fold(0.0, |_, _| self.hold(command, h).0)
-    }
+/// The same with a grip, in the middle of its play.
+fn gripping(axis: FeedAxis<f64>, play_m: f64) -> FeedAxis<f64> {
+    let contact = Contact { gap_m: 0.5 * play_m, backlash_m: Maybe::some(play_m), ..axis.contact };
+    FeedAxis { contact, ..axis }
 }
 
 fn joint() -> Joint<f64> {
@@ -201,7 +117,7 @@ fn no_command_leads_a_force_out_of_its_range_or_rate() {
 
 #[test]
 fn a_stack_without_a_load_has_its_free_stroke_at_full_voltage() {
-    let free = FeedAxis { contact: Contact { gap_m: 1.0, ..AXIS.contact }, ..with_stack(STACK) };
+    let free = FeedAxis { contact: Contact { gap_m: 1.0, ..axis().contact }, ..with_stack(STACK) };
     let mut bench = Bench::new(Actuator::FeedAxis(free), joint());
     let push = bench.hold_long(&stack(1.0), 1e-5, 20_000);
     let length = bench.state.tip_m - bench.state.tool_m;
@@ -223,6 +139,7 @@ fn a_held_part_feels_the_blocking_force_through_what_is_in_series() {
                 stiffness_n_per_m: 2e8 * stiff,
                 damping_n_s_per_m: 3e3 * stiff,
                 gap_m: 0.0,
+                backlash_m: Maybe::none(),
             },
             ..with_stack(STACK)
         };
@@ -241,7 +158,7 @@ fn a_stack_held_at_its_foot_rings_at_its_first_resonance() {
     let undamped = Piezo { damping_n_s_per_m: 0.0, ..STACK };
     let held = FeedAxis {
         tool_mass_kg: 1e12,
-        contact: Contact { gap_m: 1.0, ..AXIS.contact },
+        contact: Contact { gap_m: 1.0, ..axis().contact },
         ..with_stack(undamped)
     };
     let omega = (1e8_f64 / 0.01).sqrt(); // 15.9 kHz
@@ -383,7 +300,7 @@ fn a_sine_takes_its_rms_current_and_its_cycles() {
 /// A stack that is pulled back at once drags its tip: −k u beyond the preload.
 #[test]
 fn the_tension_of_a_stack_is_what_its_preload_does_not_bear() {
-    let axis = FeedAxis { contact: Contact { gap_m: 1.0, ..AXIS.contact }, ..with_stack(STACK) };
+    let axis = FeedAxis { contact: Contact { gap_m: 1.0, ..axis().contact }, ..with_stack(STACK) };
     let mut bench = Bench::new(Actuator::FeedAxis(axis), joint());
     let (_, rest) = bench.hold(&stack(0.0), 1e-6);
     assert!((rest.stack_tension_n + 800.0).abs() < 1e-9, "pressed by the preload alone");
@@ -400,7 +317,7 @@ fn the_tension_of_a_stack_is_what_its_preload_does_not_bear() {
 
 #[test]
 fn a_feed_keeps_its_limits_of_speed_and_acceleration() {
-    let (mut bench, h) = (Bench::new(Actuator::FeedAxis(AXIS), joint()), 1e-5);
+    let (mut bench, h) = (Bench::new(Actuator::FeedAxis(axis()), joint()), 1e-5);
     bench.part.position_m = 1.0;
     for n in 0..1000 {
         let (_, effort) = bench.hold(&feed(1.0), h);
@@ -426,7 +343,7 @@ fn a_feed_keeps_its_limits_of_speed_and_acceleration() {
 #[test]
 fn a_held_part_feels_the_feed_through_what_is_in_series() {
     let compliances =
-        [(AXIS, 1.0 / 3e7 + 1.0 / 2e8), (with_stack(STACK), 1.0 / 3e7 + 1.0 / 2e8 + 1e-8)];
+        [(axis(), 1.0 / 3e7 + 1.0 / 2e8), (with_stack(STACK), 1.0 / 3e7 + 1.0 / 2e8 + 1e-8)];
     for (axis, compliance) in compliances {
         let mut bench = Bench::new(Actuator::FeedAxis(axis), joint());
         bench.hold_long(&feed(0.01), 1e-5, 1000);
@@ -465,7 +382,7 @@ fn chain_explicitly(piezo: &Piezo<f64>, end_s: f64, h: f64) -> [f64; 4] {
 #[test]
 fn a_chain_moves_as_explicit_integration_says() {
     let piezo = Piezo { hysteresis_share: 0.0, current_max_a: 1e6, ..STACK };
-    let axis = FeedAxis { contact: Contact { gap_m: 0.0, ..AXIS.contact }, ..with_stack(piezo) };
+    let axis = FeedAxis { contact: Contact { gap_m: 0.0, ..axis().contact }, ..with_stack(piezo) };
     let end_s = 1e-3;
     let exact = chain_explicitly(&piezo, end_s, 2e-8);
     let error = |h: f64| {
@@ -482,46 +399,65 @@ fn a_chain_moves_as_explicit_integration_says() {
     assert!(coarse < 1e-3 && coarse > 12.0 * fine, "{coarse:e} {fine:e}");
 }
 
-/// Whatever is commanded and whatever the joint does: the contact force is that of its spring and
-/// damper at mid-step, never below zero, and the momentum of each mass agrees with its forces.
+/// Whatever is commanded and whatever the joint does: the contact force is that of its springs and
+/// dampers at mid-step, where a face pulls only in a grip, and the momentum of each mass agrees with
+/// its forces.
 #[test]
-fn a_contact_never_pulls_and_momentum_is_kept() {
+fn a_contact_pushes_or_grips_and_momentum_is_kept() {
     let law = Lugre { viscous_n_s_per_m: Maybe::some(60.0), ..paper_joint() };
     for (name, joint) in laws::all(law) {
-        let mut bench = Bench::new(Actuator::FeedAxis(with_stack(STACK)), joint);
-        bench.part.position_m = 0.01;
-        bench.state.feed_m = 0.01;
-        (bench.state.tool_m, bench.state.tip_m) = (0.01, 0.01);
-        let (mut seed, mut open, mut closed) = (11, 0, 0);
-        let (mut command, h) = (feed(0.0), 1e-5);
-        for n in 0..30_000 {
-            if n % 50 == 0 {
-                command.feed_m_per_s = 0.05 * random(&mut seed) + 0.01;
-                command.stack_share = random(&mut seed);
-            }
-            let factors = Factors { joint_force: 1.0 + 0.2 * random(&mut seed), ..UNDISTURBED };
-            let (before, part) = (bench.state, bench.part);
-            let (moved, _) = bench.step(&command, factors, h);
-            let (after, f) = (bench.state, moved.push_force_n);
-            let mid = |a: f64, b: f64| 0.5 * (a + b);
-            let x = mid(part.position_m, bench.part.position_m);
-            let (tip, tool) = (mid(before.tip_m, after.tip_m), mid(before.tool_m, after.tool_m));
-            let tip_v = mid(before.tip_m_per_s, after.tip_m_per_s);
-            let tool_v = mid(before.tool_m_per_s, after.tool_m_per_s);
-            let v = moved.mean_velocity_m_per_s;
-            let spring = 2e8 * (tip - 1e-5 - x) + 3e3 * (tip_v - v);
-            assert!(f >= 0.0 && (f - spring.max(0.0)).abs() < 1e-5, "{name} {n}: {f} {spring}");
-            let u = mid(before.stroke_m, after.stroke_m);
-            let stack = 1e8 * (u - tip + tool) - 200.0 * (tip_v - tool_v);
-            let w = (after.feed_m - before.feed_m) / h;
-            let axis = 3e7 * (mid(before.feed_m, after.feed_m) - tool) + 8e3 * (w - tool_v);
-            let pushed_tip = 0.01 * (after.tip_m_per_s - before.tip_m_per_s) / h - (stack - f);
-            let pushed_tool = 3.0 * (after.tool_m_per_s - before.tool_m_per_s) / h - (axis - stack);
-            assert!(pushed_tip.abs() < 1e-5 && pushed_tool.abs() < 1e-4, "{name} {n}");
-            (open, closed) = (open + u32::from(f == 0.0), closed + u32::from(f > 0.0));
-        }
-        assert!(open > 1000 && closed > 1000, "{name}: {open} {closed}");
+        let [pulled, open, pushed] = chained(name, joint, Maybe::none());
+        assert!(pulled == 0 && open > 1000 && pushed > 1000, "{name}: {pulled} {open} {pushed}");
+        let [pulled, open, pushed] = chained(name, joint, Maybe::some(2e-5));
+        assert!(pulled.min(open).min(pushed) > 1000, "{name}: {pulled} {open} {pushed}");
+        let [pulled, open, pushed] = chained(name, joint, Maybe::some(0.0));
+        assert!(pulled.min(pushed) > 1000 && open < 10, "{name}: {pulled} {open} {pushed}");
     }
+}
+
+/// Checks every step of a stack and a tool that are driven at random; counts those in which the
+/// contact pulls, is open and pushes.
+fn chained(name: &str, joint: Joint<f64>, backlash_m: Maybe<f64>) -> [u32; 3] {
+    let axis = match backlash_m.get() {
+        Some(&play) => gripping(with_stack(STACK), play),
+        None => with_stack(STACK),
+    };
+    let gap_m = axis.contact.gap_m;
+    let mut bench = Bench::new(Actuator::FeedAxis(axis), joint);
+    bench.part.position_m = 0.01;
+    bench.state.feed_m = 0.01;
+    (bench.state.tool_m, bench.state.tip_m) = (0.01, 0.01);
+    let (mut seed, mut counts) = (11, [0; 3]);
+    let (mut command, h) = (feed(0.0), 1e-5);
+    for n in 0..30_000 {
+        if n % 50 == 0 {
+            command.feed_m_per_s = 0.05 * random(&mut seed) + 0.01;
+            command.stack_share = random(&mut seed);
+        }
+        let factors = Factors { joint_force: 1.0 + 0.2 * random(&mut seed), ..UNDISTURBED };
+        let (before, part) = (bench.state, bench.part);
+        let (moved, _) = bench.step(&command, factors, h);
+        let (after, f) = (bench.state, moved.push_force_n);
+        let mid = |a: f64, b: f64| 0.5 * (a + b);
+        let x = mid(part.position_m, bench.part.position_m);
+        let (tip, tool) = (mid(before.tip_m, after.tip_m), mid(before.tool_m, after.tool_m));
+        let tip_v = mid(before.tip_m_per_s, after.tip_m_per_s);
+        let tool_v = mid(before.tool_m_per_s, after.tool_m_per_s);
+        let damper = 3e3 * (tip_v - moved.mean_velocity_m_per_s);
+        let pushing = (2e8 * (tip - gap_m - x) + damper).max(0.0);
+        let pulling = |play: &f64| (2e8 * (tip - gap_m + play - x) + damper).min(0.0);
+        let expected = pushing + backlash_m.get().map_or(0.0, pulling);
+        assert!((f - expected).abs() < 1e-5, "{name} {n}: {f} {expected}");
+        let u = mid(before.stroke_m, after.stroke_m);
+        let stack = 1e8 * (u - tip + tool) - 200.0 * (tip_v - tool_v);
+        let w = (after.feed_m - before.feed_m) / h;
+        let axis = 3e7 * (mid(before.feed_m, after.feed_m) - tool) + 8e3 * (w - tool_v);
+        let pushed_tip = 0.01 * (after.tip_m_per_s - before.tip_m_per_s) / h - (stack - f);
+        let pushed_tool = 3.0 * (after.tool_m_per_s - before.tool_m_per_s) / h - (axis - stack);
+        assert!(pushed_tip.abs() < 1e-5 && pushed_tool.abs() < 1e-4, "{name} {n}");
+        counts[if f < 0.0 { 0 } else { usize::from(f > 0.0) + 1 }] += 1;
+    }
+    counts
 }
 
 // Energy
@@ -590,8 +526,10 @@ fn energy_is_accounted_for_over_whole_extractions() {
         ("ideal", Actuator::Ideal, ramp),
         ("push_only", Actuator::PushOnly(PushOnly { force_max_n: 2000.0 }), ramp),
         ("force", Actuator::Force(FORCE), ramp),
-        ("feed_axis", Actuator::FeedAxis(AXIS), steady),
+        ("feed_axis", Actuator::FeedAxis(axis()), steady),
         ("feed_axis with a stack", Actuator::FeedAxis(with_stack(STACK)), steady),
+        ("gripping feed_axis", Actuator::FeedAxis(gripping(axis(), 0.0)), steady),
+        ("gripping stack", Actuator::FeedAxis(gripping(with_stack(STACK), 2e-5)), steady),
     ];
     let mut worst = 0.0_f64;
     for (name, actuator, controller) in kinds {
@@ -612,27 +550,36 @@ fn energy_is_accounted_for_over_whole_extractions() {
 #[test]
 fn energy_is_accounted_for_while_a_stack_hammers() {
     for (law, joint) in laws::all(short_law()) {
-        let mut bench = Bench::new(Actuator::FeedAxis(with_stack(STACK)), joint);
-        let (mut balance, mut charge, mut gaps, h) = (Balance::default(), 0.0, 0, 1e-5);
-        let mut n = 0;
-        while bench.part.position_m < 5e-3 {
-            let on = (f64::from(n) * h * 100.0).fract() < 0.2;
-            let share = if on { 1.0 } else { 0.0 };
-            let command = Command { force_n: 0.0, feed_m_per_s: 0.01, stack_share: share };
-            let (moved, effort) = bench.step(&command, UNDISTURBED, h);
-            balance.add(&effort, moved.joint_force_n * moved.mean_velocity_m_per_s * h);
-            charge += effort.charge_c;
-            gaps += u32::from(moved.push_force_n == 0.0);
-            let v = bench.part.velocity_m_per_s;
-            let stored = bench.actuator.stored_energy_j(&bench.state, bench.part.position_m);
-            balance.kept_j = 0.5 * v * v + stored;
-            assert!(n < 1000 || balance.error() < 1e-9, "{law} at {n}: {:e}", balance.error());
-            n += 1;
-            assert!(n < 200_000, "{law}: not out");
-        }
-        assert!(gaps > 100, "{law}: the contact opens");
-        let cycles = charge / (2.0 * 13e-6 * 120.0);
-        let expected = f64::from(n) * h * 100.0;
-        assert!((cycles - expected).abs() < 1.5, "{law}: {cycles} cycles, {expected}");
+        let [pulled, open, _] = hammered(law, joint, with_stack(STACK));
+        assert!(pulled == 0 && open > 100, "{law}: the contact opens {pulled} {open}");
+        let counts = hammered(law, joint, gripping(with_stack(STACK), 2e-5));
+        assert!(counts.into_iter().min() > Some(100), "{law}: {counts:?}");
     }
+}
+
+/// Hammers a part out of its joint; counts the steps in which the contact pulls, is open and pushes.
+fn hammered(law: &str, joint: Joint<f64>, axis: FeedAxis<f64>) -> [u32; 3] {
+    let mut bench = Bench::new(Actuator::FeedAxis(axis), joint);
+    let (mut balance, mut charge, mut counts, h) = (Balance::default(), 0.0, [0; 3], 1e-5);
+    let mut n = 0;
+    while bench.part.position_m < 5e-3 {
+        let on = (f64::from(n) * h * 100.0).fract() < 0.2;
+        let share = if on { 1.0 } else { 0.0 };
+        let command = Command { force_n: 0.0, feed_m_per_s: 0.01, stack_share: share };
+        let (moved, effort) = bench.step(&command, UNDISTURBED, h);
+        balance.add(&effort, moved.joint_force_n * moved.mean_velocity_m_per_s * h);
+        charge += effort.charge_c;
+        let f = moved.push_force_n;
+        counts[if f < 0.0 { 0 } else { usize::from(f > 0.0) + 1 }] += 1;
+        let v = bench.part.velocity_m_per_s;
+        let stored = bench.actuator.stored_energy_j(&bench.state, bench.part.position_m);
+        balance.kept_j = 0.5 * v * v + stored;
+        assert!(n < 1000 || balance.error() < 1e-9, "{law} at {n}: {:e}", balance.error());
+        n += 1;
+        assert!(n < 200_000, "{law}: not out");
+    }
+    let cycles = charge / (2.0 * 13e-6 * 120.0);
+    let expected = f64::from(n) * h * 100.0;
+    assert!((cycles - expected).abs() < 1.5, "{law}: {cycles} cycles, {expected}");
+    counts
 }

@@ -229,7 +229,7 @@ fn a_watch_stops_every_kind() {
     let wrongs = [f64::NAN, f64::INFINITY, 0.02, -0.02];
     for (name, controller) in every_kind() {
         let actuator = match controller {
-            Controller::SteadyFeed(_) | Controller::VibratedFeed(_) => Actuator::FeedAxis(AXIS),
+            Controller::SteadyFeed(_) | Controller::VibratedFeed(_) => Actuator::FeedAxis(axis()),
             _ => Actuator::Force(lag),
         };
         let extraction = Extraction {
@@ -261,15 +261,22 @@ fn a_watch_stops_every_kind() {
 
 // Known answers
 
-const AXIS: FeedAxis<f64> = FeedAxis {
-    speed_max_m_per_s: 0.05,
-    acceleration_max_m_per_s2: 1.0,
-    stiffness_n_per_m: 3e7,
-    damping_n_s_per_m: 1e3,
-    tool_mass_kg: 0.1,
-    tip: Tip::Rigid,
-    contact: Contact { stiffness_n_per_m: 3e8, damping_n_s_per_m: 5e3, gap_m: 1e-4 },
-};
+fn axis() -> FeedAxis<f64> {
+    FeedAxis {
+        speed_max_m_per_s: 0.05,
+        acceleration_max_m_per_s2: 1.0,
+        stiffness_n_per_m: 3e7,
+        damping_n_s_per_m: 1e3,
+        tool_mass_kg: 0.1,
+        tip: Tip::Rigid,
+        contact: Contact {
+            stiffness_n_per_m: 3e8,
+            damping_n_s_per_m: 5e3,
+            gap_m: 1e-4,
+            backlash_m: Maybe::none(),
+        },
+    }
+}
 
 /// Rigid friction: F_s 450 N, F_c 360 N at the seat, 10 N at the end after 5 mm.
 fn rigid() -> CoulombStiction<f64> {
@@ -339,7 +346,7 @@ fn a_force_ramp_breaks_a_rigid_joint_loose_at_its_stiction() {
 fn a_steady_feed_is_out_when_its_travel_says() {
     let even = CoulombStiction { coulomb_n: 450.0, ..rigid() };
     let steady = Controller::SteadyFeed(FEED);
-    let extraction = calm(even, Actuator::FeedAxis(AXIS), steady);
+    let extraction = calm(even, Actuator::FeedAxis(axis()), steady);
     let samples = until(&extraction, |s| s.next_position_m >= 5e-3);
     let last = samples.last().expect("there is one");
     let per_n = 1.0 / 3e7 + 1.0 / 3e8;

@@ -170,7 +170,12 @@ fn nothing_wrong_in_a_sensor_reaches_the_force() {
 #[test]
 fn a_stop_ends_the_feed() {
     use breakaway_core::actuator::{Contact, FeedAxis, Tip};
-    let contact = Contact { stiffness_n_per_m: 2e8, damping_n_s_per_m: 3e3, gap_m: 1.0 };
+    let contact = Contact {
+        stiffness_n_per_m: 2e8,
+        damping_n_s_per_m: 3e3,
+        gap_m: 1.0,
+        backlash_m: Maybe::none(),
+    };
     let axis = FeedAxis {
         speed_max_m_per_s: 0.05,
         acceleration_max_m_per_s2: 10.0,

@@ -89,8 +89,8 @@ class RunMetrics(ByValue):
     supplied_work_j: float
     """Work that the drives of the actuator supplied, J."""
     actuator_loss_j: float
-    """Energy lost in the actuator's dampers and its contact, J; a contact still pressed at the end
-    counts as lost."""
+    """Energy lost in the actuator's dampers and its contact, J; a contact still strained at the
+    end counts as lost."""
     rms_current_a: float
     """Root of the mean square of the stack's current, A; 0 without a stack."""
     stack_cycles: float
@@ -125,7 +125,8 @@ class Run(OneLine, ByValue):
 
     With a feed axis also ``feed_m``, ``tool_m`` and ``tip_m``: where the tip's face would be with
     axis and stack relaxed, with only the stack relaxed, and where it is. ``position_m - tip_m`` is
-    the gap, below zero where the tip presses on the part; ``tip_m - tool_m`` what the stack
+    the gap, below zero where the tip presses on the part, above the play of a grip where it
+    pulls; ``tip_m - tool_m`` what the stack
     lengthens, ``feed_m - tool_m`` what the axis yields."""
     scenario: Scenario
     """What was run, every number explicit."""

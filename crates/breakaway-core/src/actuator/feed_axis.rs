@@ -1,24 +1,9 @@
-//! A feed axis with a tool, maybe a piezo stack, and a contact that cannot pull.
+//! A feed axis with a tool, maybe a piezo stack, and its contact with the part.
 
 use super::piezo::Charged;
-use super::{ActuatorState, Command, Driven, Effort, Piezo};
-use crate::maybe::Maybe;
+use super::{ActuatorState, Command, Contact, Driven, Effort, Piezo};
 use crate::name::{Name, within};
-use crate::parameters::parameters;
-use crate::plant::Push;
 use crate::real::Real;
-
-parameters! {
-    /// The contact between the tip and the part.
-    pub struct Contact {
-        /// k_c in N/m.
-        pub stiffness_n_per_m,
-        /// c_c in N s/m.
-        pub damping_n_s_per_m,
-        /// Distance of the tip from the part at the start, m.
-        pub gap_m,
-    }
-}
 
 /// What touches the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,11 +22,11 @@ pub enum Tip<R> {
 /// dp/dt   = w,  dw/dt = clip((command − w) / h, −a, a),  |w| ≤ w_max
 /// m_t x_t'' = k_f (p − x_t) + c_f (w − x_t') − F_s                      tool
 /// m_p x_p'' = F_s − F,  F_s = k (u − x_p + x_t) − c (x_p' − x_t')       tip of the stack
-/// F       = max(0, k_c (x_p − gap − x) + c_c (x_p' − v))                contact with the part
+/// F       = that of the [`Contact`] with the part
 /// ```
 ///
 /// Without a stack the tool is the tip. The linearly implicit midpoint eliminates tool and tip, so
-/// the part meets a force F₀ − S v, which never pulls; no spring here limits the step.
+/// the part meets a force F₀ − S v at a face; no spring here limits the step.
 /// Stack and axis are those of [`Piezo`]; its stroke u has hysteresis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
@@ -136,7 +121,7 @@ impl<R: Real> Chain<R> {
 
 impl<R: Real> FeedAxis<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FeedAxis<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> FeedAxis<S> {
         FeedAxis {
             speed_max_m_per_s: f(Name::of("speed_max_m_per_s"), self.speed_max_m_per_s),
             acceleration_max_m_per_s2: f(
@@ -180,17 +165,9 @@ impl<R: Real> FeedAxis<R> {
         (chain.feed_mean_m_per_s, chain.feed_mid_m) = (feed_mean, feed_mid);
         R::section("contact: F = max(0, k_c (x_p - gap - x) + c_c (v_p - v))");
         chain.pressed_m = self.pressed(state, part_m).named("pressed_m");
-        let contact = self.contact.stiffness_n_per_m.mul_add(k, self.contact.damping_n_s_per_m);
-        let contact = contact.named("contact_n_s_per_m");
-        let spring_n = (self.contact.stiffness_n_per_m * chain.pressed_m).named("spring_n");
-        let free_n = contact.mul_add(chain.tip_free, spring_n).named("free_n");
-        let shared = (R::one() / contact.mul_add(chain.tip_yield, R::one())).named("shared");
         let current = charged.current_a;
         Driven {
-            push: Push {
-                force_n: free_n * shared,
-                yielding_n_s_per_m: Maybe::some(contact * shared),
-            },
+            push: self.contact.push(chain.pressed_m, chain.tip_free, chain.tip_yield, k),
             chain: Some(chain),
             effort: Effort {
                 charge_c: current.abs() * h,
@@ -209,13 +186,6 @@ impl<R: Real> FeedAxis<R> {
             Tip::Piezo(_) => state.tip_m,
         };
         tip_m - self.contact.gap_m - part_m
-    }
-
-    /// Energy in the contact's spring at a depth, J.
-    #[inline(always)]
-    fn contact_energy(&self, pressed_m: R) -> R {
-        let depth = pressed_m.max(R::zero());
-        R::constant(0.5) * self.contact.stiffness_n_per_m * depth * depth
     }
 
     /// Moves the drive; gives its mean speed, its middle, and whether it lags its command. A command
@@ -238,7 +208,7 @@ impl<R: Real> FeedAxis<R> {
     }
 
     /// Moves tool and tip by the force that acted; books the energy of the step. The contact's loss
-    /// is what goes in less what its spring keeps: also in a step in which contact begins or ends.
+    /// is what goes in less what its springs keep: also in a step in which contact begins or ends.
     #[inline(always)]
     pub(super) fn settle(
         &self,
@@ -274,8 +244,8 @@ impl<R: Real> FeedAxis<R> {
         }
         let closing = tip_v - part_m_per_s;
         lost = push_n.mul_add(closing, lost);
-        let kept = self.contact_energy(h.mul_add(closing, chain.pressed_m))
-            - self.contact_energy(chain.pressed_m);
+        let kept = self.contact.energy_j(h.mul_add(closing, chain.pressed_m))
+            - self.contact.energy_j(chain.pressed_m);
         state.tool_m = h.mul_add(tool_v, state.tool_m);
         state.tool_m_per_s = two * tool_v - state.tool_m_per_s;
         Effort {
@@ -298,6 +268,6 @@ impl<R: Real> FeedAxis<R> {
                 + piezo.stiffness_n_per_m * spring * spring
                 + piezo.tip_mass_kg * state.tip_m_per_s * state.tip_m_per_s;
         }
-        half.mul_add(twice, self.contact_energy(self.pressed(state, part_m)))
+        half.mul_add(twice, self.contact.energy_j(self.pressed(state, part_m)))
     }
 }

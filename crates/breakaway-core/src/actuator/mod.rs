@@ -4,12 +4,14 @@
 //! that is affine in the part's velocity ([`Push`]); once the plant has solved for both, it moves its
 //! own masses with the force that acted. To add one: a file here, a variant of [`Actuator`].
 
+mod contact;
 mod feed_axis;
 mod force_actuator;
 mod piezo;
 mod push_only;
 
-pub use feed_axis::{Chain, Contact, FeedAxis, Tip};
+pub use contact::Contact;
+pub use feed_axis::{Chain, FeedAxis, Tip};
 pub use force_actuator::ForceActuator;
 pub use piezo::Piezo;
 pub use push_only::PushOnly;
@@ -169,7 +171,7 @@ pub enum Actuator<R> {
     PushOnly(PushOnly<R>),
     /// Push-only, behind a lag and a limit of its rate.
     Force(ForceActuator<R>),
-    /// A feed axis, maybe with a piezo stack, behind a unilateral contact.
+    /// A feed axis, maybe with a piezo stack, behind a contact that pushes or grips.
     FeedAxis(FeedAxis<R>),
 }
 
@@ -192,7 +194,7 @@ impl<R: Real> Driven<R> {
 
 impl<R: Real> Actuator<R> {
     /// Applies `f` to every number.
-    pub fn map<S>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Actuator<S> {
+    pub fn map<S: Real>(&self, f: &mut impl FnMut(Name<'_>, R) -> S) -> Actuator<S> {
         match self {
             Self::Ideal => Actuator::Ideal,
             Self::PushOnly(actuator) => Actuator::PushOnly(actuator.map(f)),

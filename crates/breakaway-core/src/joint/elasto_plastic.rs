@@ -1,5 +1,6 @@
 //! Elasto-plastic friction with contact loss.
 
+use super::elements::ElementState;
 use super::frozen::{At, Bristle, Frozen, JointState};
 use super::law::Law;
 use super::lugre::Lugre;
@@ -97,6 +98,17 @@ impl<R: Real> Law<R> for ElastoPlastic<R> {
     #[inline(always)]
     fn friction_level(&self, x: R, v: R, factor: R) -> R {
         self.friction.friction_level(x, v, factor)
+    }
+
+    #[inline(always)]
+    fn let_go(
+        &self,
+        state: JointState<R>,
+        elements: &mut ElementState<R>,
+        x: R,
+        level_factor: R,
+    ) -> JointState<R> {
+        self.friction.let_go(state, elements, x, level_factor)
     }
 
     #[inline(always)]

@@ -125,6 +125,26 @@ impl<R: Real> Law<R> for Gms<R> {
         R::constant(0.5) * self.friction.stiffness_n_per_m * sum
     }
 
+    /// k_i |z_i| ≤ ν_i φ F_s(x).
+    #[inline(always)]
+    fn let_go(
+        &self,
+        state: JointState<R>,
+        elements: &mut ElementState<R>,
+        x: R,
+        level_factor: R,
+    ) -> JointState<R> {
+        R::section("a level that fell: k_i |z_i| <= nu_i F_s(x)");
+        let k_e = self.friction.stiffness_n_per_m;
+        let [forward_m, backward_m] = self.friction.loose_n(x, level_factor).map(|n| n / k_e);
+        for i in 0..self.count() {
+            let share = (self.level_shares[i] / self.stiffness_shares[i]).named("yield_share");
+            let z = elements.deflection_m[i].clamp(-(share * backward_m), share * forward_m);
+            elements.deflection_m[i] = z.named("deflection_m");
+        }
+        state
+    }
+
     #[inline(always)]
     fn frozen<F: Frozen<R>>(&self, _state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
         let (x, v) = (at.position_m, at.velocity_m_per_s);

@@ -34,6 +34,21 @@ pub trait Law<R: Real> {
         state
     }
 
+    /// What bristles let go at the start of a step when their level falls with the time: none carries
+    /// more than breaks it loose, φ F_s(x), whether the part moves or not. By their own equations
+    /// bristles relax only as the part moves. While they let go, the motion is of first order in the
+    /// step. A law without a memory leaves the state alone.
+    #[inline(always)]
+    fn let_go(
+        &self,
+        state: JointState<R>,
+        _elements: &mut ElementState<R>,
+        _x: R,
+        _level_factor: R,
+    ) -> JointState<R> {
+        state
+    }
+
     /// Freezes velocity and position, and hands what the law then is to `then`.
     fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output;
 

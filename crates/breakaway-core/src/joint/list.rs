@@ -56,6 +56,17 @@ macro_rules! joint_of {
             }
 
             #[inline(always)]
+            fn let_go(
+                &self,
+                state: JointState<R>,
+                elements: &mut ElementState<R>,
+                x: R,
+                factor: R,
+            ) -> JointState<R> {
+                match self { $( Self::$law(law) => law.let_go(state, elements, x, factor) ),+ }
+            }
+
+            #[inline(always)]
             fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output {
                 match self { $( Self::$law(law) => law.frozen(state, at, then) ),+ }
             }

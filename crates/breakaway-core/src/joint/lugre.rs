@@ -2,13 +2,14 @@
 
 use core::f64::consts::LOG2_E;
 
+use super::elements::ElementState;
 use super::engagement::engaged_level;
 use super::frozen::{At, Bristle, Frozen, JointState};
 use super::law::Law;
 use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
-use crate::variation::speed;
+use crate::variation::{hypotenuse, speed};
 
 /// Modified LuGre friction, equations (1) to (8).
 ///
@@ -111,6 +112,17 @@ impl<R: Real> Lugre<R> {
         }
     }
 
+    /// φ F_s(x) in N against forward and against backward motion.
+    #[inline(always)]
+    pub(super) fn loose_n(&self, x: R, level_factor: R) -> [R; 2] {
+        let forward = (self.breakaway_force(x) * level_factor).named("loose_n");
+        let backward = match self.backward_ratio.get() {
+            Some(&ratio) => forward * ratio,
+            None => forward,
+        };
+        [forward, backward]
+    }
+
     /// The bristle with velocity and position frozen. Where something vibrates across the motion, slip and
     /// level go with the speed of both: in the plane ż = v − k_e |v| / g(|v|) z, a vector equation.
     #[inline(always)]
@@ -158,6 +170,29 @@ impl<R: Real> Law<R> for Lugre<R> {
         let (end, length) = (self.residual_n, self.engagement_length_m);
         let levels = [self.stiction_n, self.coulomb_n];
         stribeck_level(levels, end, length, self.stribeck_velocity_m_per_s, x, v, factor)
+    }
+
+    /// |z| ≤ φ F_s(x) / k_e, z with what lies across the motion.
+    #[inline(always)]
+    fn let_go(
+        &self,
+        state: JointState<R>,
+        _elements: &mut ElementState<R>,
+        x: R,
+        level_factor: R,
+    ) -> JointState<R> {
+        R::section("a level that fell: |z| <= F_s(x) / k_e");
+        let (along, across) = (state.bristle_m, state.transverse_bristle_m);
+        let [forward_n, backward_n] = self.loose_n(x, level_factor);
+        let most_n = R::select(along.lt(R::zero()), backward_n, forward_n);
+        let (larger, smaller) = (along.abs().max(across.abs()), along.abs().min(across.abs()));
+        let carried_n = (self.stiffness_n_per_m * hypotenuse(larger, smaller)).named("carried_n");
+        let kept = R::select(most_n.lt(carried_n), most_n / carried_n, R::one()).named("kept");
+        JointState {
+            bristle_m: along * kept,
+            transverse_bristle_m: across * kept,
+            sliding: state.sliding,
+        }
     }
 
     #[inline(always)]

@@ -76,6 +76,14 @@ impl<R: Real> Variation<R> {
 
     /// Whether it depends on the time.
     pub fn reads_time(&self) -> bool {
+        self.levels_read_time()
+            || self.normal_force.is_some_and(|normal| normal.transverse.is_some())
+    }
+
+    /// Whether the friction levels depend on the time: where they do, they may fall while the part
+    /// is stuck.
+    #[inline(always)]
+    pub fn levels_read_time(&self) -> bool {
         self.drift.is_some_and(|drift| drift.over == Over::Time)
             || self.normal_force.is_some_and(|normal| normal.reads_time())
     }

@@ -82,11 +82,10 @@ impl<R: Real> NormalForce<R> {
         }
     }
 
-    /// Whether it depends on the time.
+    /// Whether N depends on the time.
+    #[inline(always)]
     pub fn reads_time(&self) -> bool {
-        self.vibration.is_some()
-            || self.transverse.is_some()
-            || self.course.is_some_and(|course| course.over == Over::Time)
+        self.vibration.is_some() || self.course.is_some_and(|course| course.over == Over::Time)
     }
 
     /// N / N_0 at travel `x` in m and time `t` in s.

@@ -1,6 +1,8 @@
 #![allow(dead_code)] // each test uses what it needs
 //! A part in its joint without a loop around it: forces in, motion out.
 
+pub(crate) mod bench;
+
 use breakaway_core::disturbance::Factors;
 use breakaway_core::joint::Joint;
 use breakaway_core::plant::{Integrator, Moved, Plant, PlantState, Push};

@@ -247,15 +247,22 @@ const STACK: Piezo<f64> = Piezo {
     current_max_a: 20.0,
     amplifier_bandwidth_hz: 5000.0,
 };
-const AXIS: FeedAxis<f64> = FeedAxis {
-    speed_max_m_per_s: 0.4,
-    acceleration_max_m_per_s2: 800.0,
-    stiffness_n_per_m: 3e7,
-    damping_n_s_per_m: 8e3,
-    tool_mass_kg: 1.0,
-    tip: Tip::Rigid,
-    contact: Contact { stiffness_n_per_m: 5e7, damping_n_s_per_m: 3e3, gap_m: 1e-6 },
-};
+fn axis() -> FeedAxis<f64> {
+    FeedAxis {
+        speed_max_m_per_s: 0.4,
+        acceleration_max_m_per_s2: 800.0,
+        stiffness_n_per_m: 3e7,
+        damping_n_s_per_m: 8e3,
+        tool_mass_kg: 1.0,
+        tip: Tip::Rigid,
+        contact: Contact {
+            stiffness_n_per_m: 5e7,
+            damping_n_s_per_m: 3e3,
+            gap_m: 1e-6,
+            backlash_m: Maybe::none(),
+        },
+    }
+}
 const FORCE: Actuator<f64> = Actuator::Force(ForceActuator {
     force_max_n: 900.0,
     bandwidth_hz: 4000.0,
@@ -338,7 +345,9 @@ fn pushed() -> Vec<Pushed> {
         force_filter_s: 1e-4,
     };
     let vibrated = Controller::VibratedFeed(VibratedFeed { feed: settings, pulses });
-    let stacked = Actuator::FeedAxis(FeedAxis { tip: Tip::Piezo(STACK), ..AXIS });
+    let stacked = Actuator::FeedAxis(FeedAxis { tip: Tip::Piezo(STACK), ..axis() });
+    let contact = Contact { backlash_m: Maybe::some(4e-6), ..axis().contact };
+    let gripping = Actuator::FeedAxis(FeedAxis { tip: Tip::Piezo(STACK), contact, ..axis() });
     let shared = |controllers: &[Controller<f64>]| controllers[0];
     let pid = shared(&controllers()[3..]);
     let pulsed = shared(&controllers()[12..]);
@@ -352,11 +361,12 @@ fn pushed() -> Vec<Pushed> {
         (push_only, Controller::TimedImpacts(IMPACTS), seen, watch),
         (Actuator::Ideal, ramp, None, watch),
         (Actuator::Ideal, pid, seen, watch),
-        (Actuator::FeedAxis(AXIS), feed, None, None),
-        (Actuator::FeedAxis(AXIS), feed, seen, watch),
+        (Actuator::FeedAxis(axis()), feed, None, None),
+        (Actuator::FeedAxis(axis()), feed, seen, watch),
         (stacked, feed, None, None),
         (stacked, vibrated, None, None),
         (stacked, vibrated, seen, watch),
+        (gripping, vibrated, None, None),
     ]
 }
 

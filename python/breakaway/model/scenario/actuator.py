@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from breakaway.model.scenario.model import Model, NotNegative, Positive
 
@@ -49,14 +49,38 @@ class ForceActuator(Model):
 
 
 class Contact(Model):
-    """The contact between the tip and the part: a spring and damper that cannot pull."""
+    """The contact between the tip and the part: a face that pushes, and in a grip one that pulls.
+
+    Each face is a spring and a damper. With ``d`` how far the tip reaches into the part, the force
+    is ``max(0, k d + c d') + min(0, k (d + backlash_m) + c d')``; without a grip, the first term.
+
+    Examples
+    --------
+    >>> Contact(stiffness_n_per_m=2e8, damping_n_s_per_m=2e3).backlash_m is None
+    True
+    >>> Contact(stiffness_n_per_m=2e8, damping_n_s_per_m=2e3, gap_m=1e-5, backlash_m=2e-5).gap_m
+    1e-05
+
+    """
 
     stiffness_n_per_m: Positive
-    """Stiffness, in N/m."""
+    """Stiffness of a face, in N/m."""
     damping_n_s_per_m: NotNegative
-    """Damping, in N s/m."""
+    """Damping of a face, in N s/m."""
     gap_m: NotNegative = 0.0
-    """Distance of the tip from the part at the start, in m."""
+    """Distance of the tip from the part at the start, in m; in a grip at most backlash_m."""
+    backlash_m: NotNegative | None = None
+    """Play of a grip, in m: the tip pulls once the part is ahead of it by more than this. 0: it
+    holds both ways without play. Left out: it only pushes."""
+
+    @model_validator(mode="after")
+    def _starts_within_its_play(self) -> Self:
+        if self.backlash_m is not None and self.gap_m > self.backlash_m:
+            raise ValueError(
+                f"gap_m: {self.gap_m!r} is not <= backlash_m = {self.backlash_m!r}; a tip that "
+                "grips starts within its play"
+            )
+        return self
 
 
 class RigidTip(Model):
@@ -105,7 +129,7 @@ class FeedAxis(Model):
     """A feed axis that moves a tool against the part, with or without a piezo stack.
 
     The drive follows the commanded speed within its acceleration; the axis, the stack and the
-    contact yield. The tip cannot pull.
+    contact yield. The tip pulls only where its contact has a ``backlash_m``.
 
     Examples
     --------

@@ -77,7 +77,7 @@
   }
 
   const gapOf = (now) => 1e3 * (now.x - now.tip); // in micrometers; below zero where the tip presses
-  const apart = (now) => now.f <= 0 && now.x > now.tip;
+  const apart = (now) => now.f === 0 && now.x > now.tip;
 
   function drawGuide(pen, left, top, inner, tall, now) {
     const s = current(), long = s.length_mm, scale = inner / (2.4 * long);
@@ -265,7 +265,7 @@
     if (now.tip === undefined) return now.f === 0 ? "; nothing pushes" : "";
     const drive = `drive ${Math.round(1e3 * (now.drive - now.tool))} µm ahead of the tool`, longer = 1e3 * (now.tip - now.tool);
     const stack = current().slip.tool ? `, stack ${Math.abs(longer).toFixed(1)} µm ${longer < 0 ? "shorter" : "longer"}` : "";
-    return `; ${apart(now) ? `tip ${gapOf(now).toFixed(1)} µm apart` : now.f > 0 ? "tip pushes" : "tip touches"}, ${drive}${stack}`;
+    return `; ${apart(now) ? `tip ${gapOf(now).toFixed(1)} µm apart` : now.f > 0 ? "tip pushes" : now.f < 0 ? "tip pulls" : "tip touches"}, ${drive}${stack}`;
   }
 
   function tell(now) {
