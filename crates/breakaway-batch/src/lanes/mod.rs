@@ -69,11 +69,14 @@ macro_rules! lanes {
             ) -> [Self; N] {
                 let mut out = kept;
                 $(
-                    let one = V::renewed::<F, K, N>(
-                        needed.0[$i],
-                        std::array::from_fn(|n| kept[n].0[$i]),
-                        std::array::from_fn(|k| from[k].0[$i]),
-                    );
+                    let (mut held, mut given) = ([V::zero(); N], [V::zero(); K]);
+                    for n in 0..N {
+                        held[n] = kept[n].0[$i];
+                    }
+                    for k in 0..K {
+                        given[k] = from[k].0[$i];
+                    }
+                    let one = V::renewed::<F, K, N>(needed.0[$i], held, given);
                     for n in 0..N {
                         out[n].0[$i] = one[n];
                     }

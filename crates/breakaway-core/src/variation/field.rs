@@ -170,15 +170,19 @@ impl<const NORMAL: bool> Function<3, 4> for Cell<NORMAL> {
     fn of<R: Real>([way, first, second]: [R; 3]) -> [R; 4] {
         let half = R::constant(0.5);
         let place = (way - half).round();
-        let knot = |i: R| {
-            let hash = hash(i, first, second);
-            if NORMAL { nearly_normal(hash) } else { hash * R::constant(1.0 / (HALF_RANGE)) }
-        };
-        let (w_0, w_1) = (knot(place), knot(place + R::one()));
-        let w_2 = knot(place + R::constant(2.0));
+        let w_0 = knot::<R, NORMAL>(place, first, second);
+        let w_1 = knot::<R, NORMAL>(place + R::one(), first, second);
+        let w_2 = knot::<R, NORMAL>(place + R::constant(2.0), first, second);
         let (step, next) = (w_1 - w_0, w_2 - w_1);
         [place, half * (w_0 + w_1), step, half * (next - step)]
     }
+}
+
+/// w_i. A function: closures are not inlined into the caller's instruction set.
+#[inline(always)]
+fn knot<R: Real, const NORMAL: bool>(i: R, first: R, second: R) -> R {
+    let hash = hash(i, first, second);
+    if NORMAL { nearly_normal(hash) } else { hash * R::constant(1.0 / HALF_RANGE) }
 }
 
 const HALF_RANGE: f64 = 33_554_432.0; // 2²⁵
