@@ -466,16 +466,22 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let joint = state.joint();
         let start = [state.position_m, state.velocity_m_per_s, state.bristle_m];
         let half = R::constant(0.5) * h;
-        let (k1, r1) = self.rates(&joint, t, start);
-        let (k2, r2) = self.rates(&joint, t + half, ahead(&start, &k1, half));
-        let (k3, r3) = self.rates(&joint, t + half, ahead(&start, &k2, half));
-        let (k4, r4) = self.rates(&joint, t + h, ahead(&start, &k3, h));
+        let after_s = [R::zero(), half, half, h];
+        let (mut slopes, mut forces) = ([[R::zero(); 3]; 4], [R::zero(); 4]);
+        let mut slope = [R::zero(); 3];
+        for stage in 0..4 {
+            let ahead = ahead(&start, &slope, after_s[stage]);
+            (slope, forces[stage]) = self.rates(&joint, t + after_s[stage], ahead);
+            slopes[stage] = slope;
+        }
+        let [k1, k2, k3, k4] = slopes;
         let mean =
             |a: R, b: R, c: R, d: R| (a + d + R::constant(2.0) * (b + c)) * R::constant(1.0 / 6.0);
         let [x, v, z]: [R; 3] =
             core::array::from_fn(|i| start[i] + h * mean(k1[i], k2[i], k3[i], k4[i]));
         let z = R::select(self.engaged(x), z, R::zero());
         (state.position_m, state.velocity_m_per_s, state.bristle_m) = (x, v, z);
+        let [r1, r2, r3, r4] = forces;
         let joint_force = mean(r1, r2, r3, r4);
         state.joint_force_n = joint_force / self.factors.joint_force;
         Moved {

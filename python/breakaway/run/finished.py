@@ -54,7 +54,8 @@ class RunMetrics(ByValue):
     peak_force_n: float
     """Largest |F|, N."""
     peak_over_breakaway: float
-    """Largest |F| over the joint's stiction force at the seat."""
+    """Largest |F| over the largest force that friction can hold with, anywhere along the guide: the
+    joint's stiction force at the seat, where nothing varies."""
     mean_force_n: float
     """Mean of F, N."""
     rms_force_n: float

@@ -115,6 +115,12 @@ impl<R: Real> Field<R> {
         }
     }
 
+    /// h in m, the width of a cell.
+    #[inline(always)]
+    pub fn cell_m(&self) -> R {
+        self.correlation_length_m / R::constant(CELLS_PER_LENGTH)
+    }
+
     /// 1 + s at position `x` in m.
     #[inline(always)]
     pub fn factor(&self, cell: &mut FieldCell<R>, x: R) -> R {
