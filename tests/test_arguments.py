@@ -225,6 +225,7 @@ def calls(w):
             {"base": w.scenario},
         ),
         "Comparison.row": (w.comparison.row, {"law": "lugre", "method": w.method.name}),
+        "Comparison.trial": (w.comparison.trial, {"law": "lugre", "method": w.method.name}),
         "Identification.aic_for": (w.found.aic_for, {"rows": 10.0}),
         "Identification.draws": (w.found.draws, {"samples": 2}),
         "Identification.posterior": (w.found.posterior, {"samples": 2}),

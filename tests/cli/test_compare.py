@@ -32,6 +32,7 @@ mass_kg = { distribution = "uniform", low = 0.8, high = 1.2 }
 engagement_length_m = { distribution = "uniform", low = 1e-3, high = 2e-3 }
 var = { distribution = "uniform", low = 0.0, high = 0.3 }
 hold_s = { distribution = "uniform", low = 1e-3, high = 1e-2 }
+correlation_length_m = { distribution = "log_uniform", low = 1e-5, high = 1e-3 }
 """
 RAMP = """
 name = "{name}"
@@ -75,8 +76,8 @@ def test_it_says_the_table_and_lists_its_files(
         assert sentence in shown.stdout
     for name in ("index.html", "table.csv", "comparison.toml", "shares.svg"):
         assert name in written_to(out, shown.stdout)
-    assert "lugre: shares of 6 parts" in shown.stdout
-    assert "two_region: median, and 99 %" in shown.stdout
+    assert "lugre, field: shares of 6 parts" in shown.stdout
+    assert "two_region, field: median, and 99 %" in shown.stdout
     assert re.search(r"slow +100 \(54.1 to 100\)", shown.stdout)
     assert "stack cycles" not in shown.stdout
     refused = call(*given, "--out", out)
@@ -116,6 +117,7 @@ def test_a_file_is_no_folder(call: Call, given: list[str], tmp_path: Path) -> No
     ("words", "said"),
     [
         (["--laws", "lugr"], "laws: 'lugr' is not one of"),
+        (["--variations", "field,nine"], "variations: 'nine' is not one of field, part, none, "),
         (["--method", "steady_fed"], "did you mean steady_feed"),
         (["--runs", "0"], "runs: 0 is not >= 1"),
         (["--baseline", "none"], "baselines: 'none' is not one of slow, fast"),

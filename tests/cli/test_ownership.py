@@ -64,7 +64,7 @@ MARKED = {
     "a run": ("metrics.json", '{"outcome": 1, "metrics": 1, "breakaway_version": 1}'),
     "a study, tuning or comparison": (
         "manifest.json",
-        '{"format": 3, "identity": "", "breakaway_version": "", "asked": {"kind": "sweep"}}',
+        '{"format": 4, "identity": "", "breakaway_version": "", "asked": {"kind": "sweep"}}',
     ),
     "a design": ("design.json", '{"scenario": 1, "controller": 1, "gain_sets": 1}'),
     "exported C": ("interface.json", '{"breakaway_version": 1, "what": 1}'),

@@ -23,6 +23,7 @@ mass_kg = { distribution = "uniform", low = 0.8, high = 1.2 }
 engagement_length_m = { distribution = "uniform", low = 1e-3, high = 2e-3 }
 var = { distribution = "uniform", low = 0.0, high = 0.3 }
 hold_s = { distribution = "uniform", low = 1e-3, high = 1e-2 }
+correlation_length_m = { distribution = "log_uniform", low = 1e-5, high = 1e-3 }
 
 [sensors.position]
 noise_rms_m = 1e-6

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from breakaway.ask.comparison.asked import Asked
 from breakaway.ask.comparison.courses import course_of, kept_rows, worst_slip
 from breakaway.ask.comparison.findings import sentences_of
 from breakaway.ask.comparison.table import median_row, table_of, worst_row
-from breakaway.run.trials import Trial
+from breakaway.run.trials import Case
 
 pytestmark = pytest.mark.slow
 
@@ -32,8 +33,8 @@ def columns_of(folder: Path, law: str, method: str) -> dict[str, np.ndarray]:
 
 def test_the_folder_has_everything(whole, done):
     names = {path.name for path in whole.iterdir()}
-    courses = {f"course_{place}_{law}" for place in (1, 2, 3) for law in LAWS}
-    figures = {"shares", "jump_against_peak", *courses}
+    courses = {f"course_{place}_{law}_field" for place in (1, 2, 3) for law in LAWS}
+    figures = {"shares", "jump_against_peak_field", *courses}
     assert names == {
         ".lock", "digests.txt", "manifest.json", "comparison.toml", "table.csv", "summary.json",
         "index.html", "pieces", *(f"{name}.{kind}" for name in figures for kind in ("png", "svg")),
@@ -115,29 +116,98 @@ def test_sentences_say_what_was_found(done):
     text = "\n".join(done.result)
     assert "follow (100 %) clearly frees most parts gently under every law" in text
     assert "ramp frees 0 % gently; it fails most often because of the jump, within its" in text
-    assert re.search(r"weak & <slow> leaves [\d.]+ to [\d.]+ % of the parts in place after", text)
-    assert "CAUTION" not in text
+    assert re.search(r"weak & <slow> leaves [\d.]+ % of the parts in place after", text)
+    assert [sentence for sentence in done.result if sentence.startswith("CAUTION")] == [
+        "CAUTION: asked under one kind of variation (field) alone; --variations "
+        "field,part,none,paper_random_factor shows what turns on it"
+    ]
 
 
 def test_a_conclusion_of_one_law_is_flagged(done):
     """Under one law of the two, both ways are made to do the same."""
-    follow = done.trials["lugre"]["follow"]
-    trials = {law: dict(by_method) for law, by_method in done.trials.items()}
-    trials["lugre"]["ramp"] = Trial(
-        follow.population, done.asked.methods[1], "lugre", 0, follow.runs, follow.parts,
-        follow.metrics,
-    )  # fmt: skip
+    trials = {case: dict(by_method) for case, by_method in done.trials.items()}
+    lugre = trials[Case("lugre", "field")]
+    lugre["ramp"] = replace(lugre["follow"], method=done.asked.methods[1])
     said = sentences_of(done.asked, trials, table_of(trials, []))
     assert (
         "CAUTION, one law only: follow is gentler than ramp under elasto_plastic, not clearly "
         "under lugre"
     ) in said
-    assert any(s.startswith("CAUTION: which method frees most parts gently depends") for s in said)
+    assert (
+        "CAUTION: which method frees most parts gently depends on the friction law; do not rely on "
+        "one law"
+    ) in said
     assert any("clearly frees more parts gently than follow" in s for s in said)
 
 
+def under_two_variations(done, alike):
+    """Give what is said where ramp does what follow does in some of four cases."""
+    asked = done.asked.model_copy(update={"variations": ["field", "none"]})
+    trials = {case: dict(done.trials[Case(case.law, "field")]) for case in asked.cases}
+    for law, variation in alike:
+        found = trials[Case(law, variation)]
+        found["ramp"] = replace(found["follow"], method=asked.methods[1])
+    return sentences_of(asked, trials, table_of(trials, []))
+
+
+def test_a_conclusion_of_one_variation_is_flagged(done):
+    said = under_two_variations(done, [("lugre", "none"), ("elasto_plastic", "none")])
+    assert (
+        "CAUTION, one variation only: follow is gentler than ramp under every law with field, not "
+        "clearly under every law with none"
+    ) in said
+    assert (
+        "CAUTION: which method frees most parts gently depends on how friction varies; do not rely "
+        "on one variation"
+    ) in said
+    assert not any("depends on the friction law" in s or "one kind of variation" in s for s in said)
+
+
+def test_a_conclusion_of_one_law_with_one_variation_is_flagged(done):
+    even = [("lugre", "none"), ("elasto_plastic", "field"), ("elasto_plastic", "none")]
+    said = under_two_variations(done, even)
+    assert (
+        "CAUTION, one law and one variation only: follow is gentler than ramp under lugre with "
+        "field, not clearly under lugre with none, elasto_plastic with field and elasto_plastic "
+        "with none"
+    ) in said
+    assert sum("frees most parts gently depends on" in s for s in said) == 2
+
+
+def test_what_holds_everywhere_is_not_flagged(done):
+    said = under_two_variations(done, [])
+    assert not any(s.startswith("CAUTION") for s in said)
+    best = "follow (100 %) clearly frees most parts gently under every law with every variation"
+    assert best in said
+
+
+def test_every_law_is_asked_with_every_variation(inputs, tmp_path):
+    population, methods = inputs
+    done = bk.compare_methods(
+        population, methods[:2], laws=["lugre", "gms"], variations=["part", "none"], runs=4,
+        out=tmp_path / "out",
+    )  # fmt: skip
+    found = [(row["law"], row["variation"], row["method"]) for row in done.table]
+    assert found == [
+        (law, how, name) for law in ("lugre", "gms") for how in ("part", "none")
+        for name in ("follow", "ramp")
+    ]  # fmt: skip
+    alone = bk.run_trial(
+        done.asked.population, done.asked.methods[1], law="gms", variation="part", runs=4, seed=0
+    )
+    assert done.trial("gms", "ramp", variation="part") == alone
+    assert done.row("gms", "ramp") == done.row("gms", "ramp", variation="part")
+    pieces = ds.dataset(tmp_path / "out" / "pieces", format="parquet").to_table()
+    assert set(pieces["variation"].to_pylist()) == {"part", "none"}
+    page = (tmp_path / "out" / "index.html").read_text()
+    assert "2 friction laws with 2 kinds of variation" in page
+    assert "generalized Maxwell-slip, friction varies from part to part" in page
+    file = tmp_path / "out" / "comparison.toml"
+    assert bk.compare_methods(file, out=tmp_path / "out", resume=True) == done
+
+
 def test_the_worst_part_replays_bit_for_bit(done):
-    for trial in done.trials["elasto_plastic"].values():
+    for trial in done.trials[Case("elasto_plastic", "field")].values():
         for row in (worst_row(trial), median_row(trial)):
             run = trial.replay(row)
             for name, values in trial.metrics.items():
@@ -146,7 +216,7 @@ def test_the_worst_part_replays_bit_for_bit(done):
 
 
 def test_the_worst_slip_has_the_largest_jump(done):
-    for trial in done.trials["lugre"].values():
+    for trial in done.trials[Case("lugre", "field")].values():
         run = trial.replay(worst_row(trial))
         start, end = worst_slip(run)
         x = run.trace["position_m"]
@@ -174,7 +244,7 @@ def test_a_feed_axis_tells_where_drive_tool_and_tip_are(name):
 
 
 def test_a_force_has_no_tip(done):
-    course = course_of(done.trials["lugre"]["ramp"], 0)
+    course = course_of(done.trial("lugre", "ramp"), 0)
     assert set(course.whole) == {"t_s", "position_m", "force_n", "breakaway_n"}
 
 
@@ -205,7 +275,7 @@ def test_one_method_alone_is_a_comparison(inputs):
     done = bk.compare_methods(population, [methods[2]], laws=["two_region"], runs=2)
     row = done.row("two_region", "weak & <slow>")
     assert (row["against"], row["gentle_p"], row["best"]) == (None, None, "")
-    with pytest.raises(bk.StudyError, match=r"lugre, ramp: was not compared; the laws are two_reg"):
+    with pytest.raises(bk.StudyError, match=r"lugre, field, ramp: was not compared; the laws a"):
         done.row("lugre", "ramp")
 
 
@@ -219,9 +289,9 @@ def test_a_range_of_parts_is_these_parts(inputs, tmp_path):
     """Parts are functions of seed and number, so a range meets those that all of them would."""
     population, (method, *_) = inputs
     asked = {"methods": [method], "laws": ["lugre"]}
-    (whole,) = bk.compare_methods(population, **asked, runs=5).trials["lugre"].values()
+    whole = bk.compare_methods(population, **asked, runs=5).trial("lugre", "follow")
     done = bk.compare_methods(population, **asked, runs=range(2, 5), out=tmp_path / "out")
-    (some,) = done.trials["lugre"].values()
+    some = done.trial("lugre", "follow")
     assert some.runs == range(2, 5)
     for name, values in whole.metrics.items():
         assert np.array_equal(some.metrics[name], values[2:], equal_nan=True)
@@ -234,6 +304,11 @@ def test_a_range_of_parts_is_these_parts(inputs, tmp_path):
         ({"laws": ["lugr"]}, "laws: 'lugr' is not one of .*; did you mean 'lugre'?"),
         ({"laws": []}, "laws: "),
         ({"laws": ["gms", "gms"]}, "laws: 'gms' is given twice"),
+        (
+            {"variations": ["fields"]},
+            "variations: 'fields' is not one of .*; did you mean 'field'?",
+        ),
+        ({"variations": ["part", "part"]}, "variations: 'part' is given twice"),
         ({"runs": 0}, "runs: 0 is not >= 1"),
         ({"seed": -1}, "seed: -1 is not >= 0"),
         ({"methods": []}, "methods: "),

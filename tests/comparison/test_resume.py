@@ -106,7 +106,7 @@ def test_a_finished_comparison_computes_and_draws_nothing(whole, tmp_path, monke
 @pytest.mark.slow
 def test_a_missing_file_of_the_end_is_made_again(whole, tmp_path):
     folder = shutil.copytree(whole, tmp_path / "done")
-    (folder / "course_2_lugre.svg").unlink()
+    (folder / "course_2_lugre_field.svg").unlink()
     bk.compare_methods(folder / "comparison.toml", out=folder, resume=True)
     assert contents(folder) == contents(whole)
 

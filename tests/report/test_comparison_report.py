@@ -14,12 +14,14 @@ import pytest
 
 from breakaway.drawing.style import save_figure
 from breakaway.model.scenario import Gentleness, load_method, load_population
+from breakaway.run.trials import Case
 from breakaway.show.plots.comparison import Cloud, Course, plot_course, plot_scatter, plot_shares
 from breakaway.show.report.comparison import ShownFigure, comparison_page
 
 pytestmark = pytest.mark.slow
 
 METHODS = ["force_ramp", "paper_pid"]
+CASES = [Case("lugre", "field"), Case("gms", "field")]
 NAME = "<b>mine & co</b>"
 SHARES = ("released", "gentle", "strict")
 SPREADS = (
@@ -53,8 +55,9 @@ def course(index: int, *, axis: bool = False) -> Course:
     )  # fmt: skip
 
 
-def row(law: str, method: str, gentle: float, *, stack: bool) -> dict[str, object]:
-    values: dict[str, object] = {"law": law, "method": method, "runs": 100}
+def row(case: Case, method: str, gentle: float, *, stack: bool) -> dict[str, object]:
+    values: dict[str, object] = {"law": case.law, "variation": case.variation}
+    values |= {"method": method, "runs": 100}
     for name in SHARES:
         values |= {name: int(100 * gentle), f"{name}_share": gentle}
         values |= {f"{name}_low": max(0.0, gentle - 0.1), f"{name}_high": min(1.0, gentle + 0.1)}
@@ -77,14 +80,14 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> str:
     methods[0] = methods[0].model_copy(update={"name": NAME})
     names = [method.name for method in methods]
     rows = [
-        row(law, name, gentle, stack=law == "gms")
-        for law in ("lugre", "gms")
+        row(case, name, gentle, stack=case.law == "gms")
+        for case in CASES
         for name, gentle in zip(names, (0.2, 0.9), strict=True)
     ]
     clouds = [
-        Cloud(law, name, np.array([1.0, 2.0]), np.array([0.0, 1e-3]),
+        Cloud(case, name, np.array([1.0, 2.0]), np.array([0.0, 1e-3]),
               np.array([True, False]), np.array([True, False]))
-        for law in ("lugre", "gms") for name in names
+        for case in CASES for name in names
     ]  # fmt: skip
     drawn = {
         "shares": (plot_shares(rows), ""),
@@ -94,14 +97,14 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> str:
     }
     figures = []
     for key, (figure, name) in drawn.items():
-        for law in ("lugre", "gms") if name else ("",):
-            file = folder / f"{key}_{law}.svg"
+        for case in CASES if name else (None,):
+            file = folder / f"{key}_{case.key if case else ''}.svg"
             save_figure(figure, file)
-            figures.append(ShownFigure(file.stem, f"{key}.", "A caption.", file, name, law))
+            figures.append(ShownFigure(file.stem, f"{key}.", "A caption.", file, name, case))
     return comparison_page(
         population=load_population("seized_parts"),
         methods=methods,
-        laws=["lugre", "gms"],
+        cases=CASES,
         runs=100,
         seed=0,
         table=rows,
@@ -109,8 +112,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> str:
         notes=["a note"],
         figures=figures,
         courses={
-            law: {names[0]: course(place), names[1]: course(place + 1, axis=True)}
-            for place, law in enumerate(("lugre", "gms"))
+            case: {names[0]: course(place), names[1]: course(place + 1, axis=True)}
+            for place, case in enumerate(CASES)
         },
     )
 
@@ -147,8 +150,9 @@ def test_names_are_escaped(page):
     data = re.search(r'<script type="application/json" id="courses">(.*?)</script>', page)
     assert data is not None
     scenes = json.loads(data[1])
-    assert [(scene["law"], scene["method"]) for scene in scenes] == [
-        ("lugre", NAME), ("lugre", "paper_pid"), ("gms", NAME), ("gms", "paper_pid"),
+    assert [(scene["case"], scene["method"]) for scene in scenes] == [
+        ("lugre_field", NAME), ("lugre_field", "paper_pid"), ("gms_field", NAME),
+        ("gms_field", "paper_pid"),
     ]  # fmt: skip
     assert scenes[0]["slip"]["x"][-1] == 15.0
 
@@ -165,17 +169,17 @@ def test_positions_of_an_axis_are_told_where_there_is_one(page):
 
 
 def test_there_is_a_figure_of_each_method_under_each_law(page):
-    shown = [v for tag, v in Page(page).tags if tag == "figure" and v.get("data-law")]
-    assert [(v["id"], v["data-law"]) for v in shown] == [
-        ("course_1_lugre", "lugre"), ("course_1_gms", "gms"),
-        ("course_2_lugre", "lugre"), ("course_2_gms", "gms"),
+    shown = [v for tag, v in Page(page).tags if tag == "figure" and v.get("data-case")]
+    assert [(v["id"], v["data-case"]) for v in shown] == [
+        ("course_1_lugre_field", "lugre_field"), ("course_1_gms_field", "gms_field"),
+        ("course_2_lugre_field", "lugre_field"), ("course_2_gms_field", "gms_field"),
     ]  # fmt: skip
     assert not any("hidden" in v for v in shown)  # all are there without JavaScript
 
 
 def test_the_table_marks_the_best_and_shows_wear_where_there_is_a_stack(page):
-    lugre, gms = page[page.index('id="table-lugre"') : page.index('id="figures"')].split(
-        'id="table-gms"'
+    lugre, gms = page[page.index('id="table-lugre_field"') : page.index('id="figures"')].split(
+        'id="table-gms_field"'
     )
     assert lugre.count('<span class="best">90</span>') == 1
     assert "stack loss" not in lugre
@@ -266,17 +270,17 @@ document.querySelector('input[value="whole"]').click(); found.whole = time();
 press("End"); found.wholeEnd = time();
 const seek = document.getElementById("seek");
 const words = () => document.getElementById("told").textContent;
-const law = document.querySelector("#methods select.law"), hidden = () =>
-  [...document.querySelectorAll("figure[data-law]")].filter((f) => f.hidden).map((f) => f.id);
+const chosen = document.querySelector("#methods select.case"), hidden = () =>
+  [...document.querySelectorAll("figure[data-case]")].filter((f) => f.hidden).map((f) => f.id);
 found.hidden = hidden();
-law.value = "gms"; law.dispatchEvent(new Event("change")); found.hiddenThen = hidden();
-found.laws = [...document.querySelectorAll("select.law")].map((select) => select.value);
+chosen.value = "gms_field"; chosen.dispatchEvent(new Event("change")); found.hiddenThen = hidden();
+found.cases = [...document.querySelectorAll("select.case")].map((select) => select.value);
 found.partThen = document.getElementById("told").textContent.split(",")[0];
 choice.value = 1; choice.dispatchEvent(new Event("change"));
 press("Home"); found.pressed = Number(stage.dataset.gap); found.touches = words();
 press("End"); found.gap = Number(stage.dataset.gap); found.apart = words();
 seek.value = 600; seek.dispatchEvent(new Event("input")); found.pushes = words();
-law.value = "lugre"; law.dispatchEvent(new Event("change"));
+chosen.value = "lugre_field"; chosen.dispatchEvent(new Event("change"));
 found.told = document.getElementById("told").textContent;
 seek.value = 500; seek.dispatchEvent(new Event("input")); found.middle = time();
 press(" "); found.playing = document.getElementById("play").getAttribute("aria-pressed");
@@ -298,9 +302,9 @@ def test_keys_slider_and_choice_work(page, tmp_path):
     assert (told["whole"], told["wholeEnd"], told["middle"]) == (0.0, 2.0, 1.0)
     assert str(told["told"]).startswith("Part no. 1, 1 kg, breaks loose at 500 N; jumps 15 mm")
     assert (told["playing"], told["calm"]) == ("true", False)
-    assert told["hidden"] == ["course_1_gms", "course_2_gms"]
-    assert told["hiddenThen"] == ["course_1_lugre", "course_2_lugre"]
-    assert (told["laws"], told["partThen"]) == (["gms", "gms"], "Part no. 1")
+    assert told["hidden"] == ["course_1_gms_field", "course_2_gms_field"]
+    assert told["hiddenThen"] == ["course_1_lugre_field", "course_2_lugre_field"]
+    assert (told["cases"], told["partThen"]) == (["gms_field", "gms_field"], "Part no. 1")
     axis = "drive 349 µm ahead of the tool, stack 50.0 µm longer."
     assert told["pressed"] == pytest.approx(-1.0)
     assert str(told["touches"]).endswith(f"; tip touches, {axis}")

@@ -212,7 +212,7 @@ def test_another_version_is_refused(robustness, whole, tmp_path):
         run_study(robustness, out=folder, resume=True)
 
 
-@pytest.mark.parametrize("text", ["", "{}", "[]", '{"format": 3, "identity": 1, "asked": {}}'])
+@pytest.mark.parametrize("text", ["", "{}", "[]", '{"format": 4, "identity": 1, "asked": {}}'])
 def test_a_broken_manifest_is_no_crash(robustness, tmp_path, text):
     (tmp_path / "manifest.json").write_text(text)
     with pytest.raises(StudyError, match=r"manifest\.json"):

@@ -260,6 +260,7 @@ def population(name: str) -> dict[str, Any]:
             "engagement_length_m": between(0.001, 0.002),
             "var": between(0.0, 0.2),
             "hold_s": between(1e-3, 1e-2),
+            "correlation_length_m": between(1e-5, 1e-3),
         },
     }
 

@@ -61,6 +61,8 @@ def test_parts_are_what_the_issue_says():
         ("engagement_length_m", 0.02, 0.1),
         ("var", 0.0, 0.5),
         ("hold_s", 1e-4, 1e-2),
+        ("correlation_length_m", 1e-5, 1e-2),
+        ("level_draw", -1.0, 1.0),
     ):
         values = parts[name]
         assert low <= values.min() <= low + 0.01 * (high - low), name
@@ -73,7 +75,7 @@ def test_a_joint_is_made_of_its_part(population):
         name: values[:1] for name, values in bk.draw_parts(population, range(1), seed=0).items()
     }
     method = bk.load_method("force_ramp")
-    columns = part_columns(population, method, "lugre", parts)
+    columns = part_columns(population, method, "lugre", "none", parts)
     k_e, m = columns["joint.stiffness_n_per_m"][0], parts["mass_kg"][0]
     assert columns["joint.stiction_n"] / columns["joint.coulomb_n"] == pytest.approx(
         parts["stiction_ratio"]
@@ -86,7 +88,8 @@ def test_a_joint_is_made_of_its_part(population):
 
 def test_steps_resolve_every_bristle(population):
     parts = bk.draw_parts(population, range(500), seed=0)
-    trial = bk.Trial(population, bk.load_method("force_ramp"), "lugre", 0, range(500), parts, {})
+    method = bk.load_method("force_ramp")
+    trial = bk.Trial(population, method, "lugre", "field", 0, range(500), parts, {})
     steps = steps_per_period(population, parts)
     for i in (int(steps.argmin()), int(steps.argmax())):
         assert trial.scenario(i).timing.steps_per_period == steps[i]  # which checks the rule
@@ -107,7 +110,7 @@ def test_what_a_method_knows_has_to_be_a_number_of_it(population):
     method = bk.load_method("force_ramp")
     wrong = method.model_copy(update={"knows": {"controler.travel_m": "engagement_length_m"}})
     with pytest.raises(StudyError, match=r"controler\.travel_m"):
-        scenario_of(population, wrong, "lugre", seed=0, steps=8)
+        scenario_of(population, wrong, "lugre", "field", seed=0, steps=8)
 
 
 def test_a_method_may_be_told_a_multiple_of_a_length(population):

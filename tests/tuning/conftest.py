@@ -18,6 +18,7 @@ PARTS = {
     "engagement_length_m": {"distribution": "uniform", "low": 0.001, "high": 0.002},
     "var": {"distribution": "uniform", "low": 0.0, "high": 0.2},
     "hold_s": {"distribution": "uniform", "low": 1e-3, "high": 1e-2},
+    "correlation_length_m": {"distribution": "uniform", "low": 1e-5, "high": 1e-3},
 }
 SPEED = "controller.speed_m_per_s"
 

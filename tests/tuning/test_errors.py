@@ -29,6 +29,7 @@ SPAN = {"low": 0.01, "high": 0.04}
         ),
         ({"tune": {SPEED: {**SPAN, "hihg": 1.0}}}, "hihg: is not a known key; did you mean high?"),
         ({"objectives": []}, "objectives"),
+        ({"variation": "fields"}, "variation: 'fields' is not one of 'field', 'part', 'none' or"),
         ({"objectives": ["strict_shar"]}, "objectives[0]: 'strict_shar' is not a score; did you"),
         ({"objectives": ["strict_share"] * 2}, "objectives: 'strict_share' is named twice"),
         ({"objectives": ["median_stack_loss_w"]}, "needs a piezo, which the method does not have"),

@@ -68,6 +68,21 @@ def test_scores_are_those_of_a_trial(feed, tmp_path):
             assert found["median_time_to_release_s", "worst"] == max(times.values())
 
 
+@pytest.mark.usefixtures("no_figures")
+def test_scores_are_those_of_the_variation(feed, tmp_path):
+    assert feed().variation == feed().population.variation == "field"
+    tuning = feed(variation="part", evaluations=1)
+    done = bk.tune(tuning, out=tmp_path)
+    trial = bk.run_trial(
+        tuning.population, tuning.method, variation="part", runs=tuning.training, seed=0
+    )
+    times = trial.metrics["time_to_release_s"]
+    assert done.evaluations[0].worst["median_time_to_release_s"].value == np.sort(times)[5]
+    assert done.summary["variation"] == "part"
+    assert "friction varies from part to part (part)" in done.summary["notes"]
+    assert "friction varies from part to part" in (tmp_path / "best.toml").read_text()
+
+
 def test_the_method_as_it_is_comes_first(feed, tmp_path):
     tuning = feed(evaluations=2)
     done = bk.tune(tuning, out=tmp_path)

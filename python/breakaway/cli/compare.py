@@ -11,7 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
-from breakaway.cli.completion import friction_laws, method_preset, population_preset
+from breakaway.cli.completion import (
+    friction_laws,
+    friction_variations,
+    method_preset,
+    population_preset,
+)
 from breakaway.cli.options import Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.sheet import Sheet
@@ -58,6 +63,15 @@ def compare(
             autocompletion=friction_laws,
         ),
     ] = None,
+    variations: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="How friction varies: field,part,none,paper_random_factor, with commas or "
+            "repeated. Left out: as the population says.",
+            metavar="VARIATIONS",
+            autocompletion=friction_variations,
+        ),
+    ] = None,
     baseline: Annotated[
         list[str] | None,
         typer.Option(
@@ -74,6 +88,9 @@ def compare(
 ) -> None:
     """Try methods of extraction on the same parts of a population, under several friction laws.
 
+    Every law is asked with each of the VARIATIONS: friction that varies along
+    the way (field), from part to part (part), not at all (none), or anew in
+    time as in the paper (paper_random_factor).
     POPULATION is a preset or a TOML file of a population. It can also be the
     comparison.toml of an earlier comparison, which is then run again.
     Results are saved as they finish (Parquet). At the end the folder also
@@ -83,13 +100,13 @@ def compare(
     """
     from breakaway.ask.comparison import compare_methods
 
-    named = [name.strip() for given in laws for name in given.split(",")] if laws else None
     try:
         with _progress() as progress:
             done = compare_methods(
                 population,
                 method,
-                laws=named,
+                laws=_named(laws),
+                variations=_named(variations),
                 runs=runs,
                 seed=seed,
                 baselines=baseline,
@@ -107,6 +124,11 @@ def compare(
         say_json(_document(done))
     else:
         _show(done)
+
+
+def _named(given: Sequence[str] | None) -> list[str] | None:
+    """Give the names of an option that is repeated, or has commas."""
+    return [name.strip() for one in given for name in one.split(",")] if given else None
 
 
 def _again(out: Path) -> str:
@@ -141,6 +163,7 @@ def _document(done: Comparison) -> dict[str, Any]:
         "population": asked.population.name,
         "methods": asked.names,
         "laws": asked.laws,
+        "variations": asked.variations,
         "runs": asked.runs,
         "seed": asked.seed,
         "result": list(done.result),
@@ -152,11 +175,13 @@ def _document(done: Comparison) -> dict[str, Any]:
 
 def _show(done: Comparison) -> None:
     stack = any(row["stack_cycles_median"] is not None for row in done.table)
-    for law in done.asked.laws:
-        rows = [row for row in done.table if row["law"] == law]
-        say(_outcomes(law, rows), _harm(law, rows))
+    for case in done.asked.cases:
+        named = (case.law, case.variation)
+        rows = [row for row in done.table if (row["law"], row["variation"]) == named]
+        heading = ", ".join(named)
+        say(_outcomes(heading, rows), _harm(heading, rows))
         if stack:
-            say(_wear(law, rows))
+            say(_wear(heading, rows))
     say("*: best of its column; time, jump, force and velocity: among methods that free 90 %")
     for sentence in done.result:
         say(sentence)
@@ -171,13 +196,13 @@ def _files(done: Comparison) -> Sequence[Path]:
     return sorted(p for p in done.folder.iterdir() if p.is_file() and p.name[0] != ".")
 
 
-def _outcomes(law: str, rows: Sequence[Row]) -> Sheet:
+def _outcomes(case: str, rows: Sequence[Row]) -> Sheet:
     """Give what became of the parts: shares of all, in percent, with 95 % intervals."""
     alone = ("force", "jump", "velocity")
     shares = ("released", "gentle", "strict")
     columns = ["method", *(f"{n} %" for n in shares), *(f"within {n} %" for n in alone)]
     columns += ["best other", "only this", "only other", "p"]
-    sheet = Sheet(f"{law}: shares of {rows[0]['runs']} parts", columns, numbers=columns[1:])
+    sheet = Sheet(f"{case}: shares of {rows[0]['runs']} parts", columns, numbers=columns[1:])
     for row in rows:
         p = row["gentle_p"]
         pairing = [row["against"] or "", row["gentle_only_this"], row["gentle_only_other"]]
@@ -191,7 +216,7 @@ def _outcomes(law: str, rows: Sequence[Row]) -> Sheet:
     return sheet
 
 
-def _harm(law: str, rows: Sequence[Row]) -> Sheet:
+def _harm(case: str, rows: Sequence[Row]) -> Sheet:
     """Give what the parts suffered: medians, and the 99 % quantiles behind them."""
     spreads = (
         ("time_to_release_s", "time to release s", 1.0),
@@ -202,7 +227,7 @@ def _harm(law: str, rows: Sequence[Row]) -> Sheet:
         ("impulse_n_s", "impulse N s", 1.0),
     )
     columns = ["method", *(heading for _, heading, _ in spreads)]
-    sheet = Sheet(f"{law}: median, and 99 %", columns, numbers=columns[1:])
+    sheet = Sheet(f"{case}: median, and 99 %", columns, numbers=columns[1:])
     for row in rows:
         cells = [
             f"{_marked(row, f'{name}_median', factor)}, {_marked(row, f'{name}_p99', factor)}"
@@ -212,11 +237,11 @@ def _harm(law: str, rows: Sequence[Row]) -> Sheet:
     return sheet
 
 
-def _wear(law: str, rows: Sequence[Row]) -> Sheet:
+def _wear(case: str, rows: Sequence[Row]) -> Sheet:
     """Give what wears a piezo stack: medians."""
     keys = ("stack_cycles_median", "rms_current_a_median", "stack_loss_w_median")
     columns = ["method", "stack cycles", "RMS current A", "stack loss W"]
-    sheet = Sheet(f"{law}: wear of the stack, medians", columns, numbers=columns[1:])
+    sheet = Sheet(f"{case}: wear of the stack, medians", columns, numbers=columns[1:])
     for row in rows:
         if row[keys[0]] is not None:
             sheet.add(row["method"], *(_marked(row, key) for key in keys))

@@ -1,8 +1,8 @@
-"""Names that a shell completes: presets, methods, populations and friction laws."""
+"""Names that a shell completes: presets, methods, populations, friction laws and variations."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 Completion = Callable[[str], list[str]]
 
@@ -34,5 +34,23 @@ def friction_laws(incomplete: str) -> list[str]:
     """
     from breakaway.model.scenario import LAWS
 
+    return _last_of_several(incomplete, LAWS)
+
+
+def friction_variations(incomplete: str) -> list[str]:
+    """Complete the last of several kinds of variation with commas between them.
+
+    Examples
+    --------
+    >>> friction_variations("field,pap")
+    ['field,paper_random_factor']
+
+    """
+    from breakaway.model.scenario.variation import VARIATIONS
+
+    return _last_of_several(incomplete, VARIATIONS)
+
+
+def _last_of_several(incomplete: str, known: Sequence[str]) -> list[str]:
     *done, last = incomplete.split(",")
-    return [",".join([*done, law]) for law in LAWS if law.startswith(last)]
+    return [",".join([*done, word]) for word in known if word.startswith(last)]

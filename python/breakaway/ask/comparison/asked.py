@@ -1,4 +1,4 @@
-"""What a comparison asks: the population, the methods, the friction laws, how many parts."""
+"""What a comparison asks: the population, the methods, laws and variations, how many parts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ from breakaway.model.scenario.laws import LAWS, Law
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.model import Name
 from breakaway.model.scenario.population import PartPopulation
+from breakaway.model.scenario.variation import VARIATIONS, VariationKind
 from breakaway.run.batch.simulation import RUNS_MAX
+from breakaway.run.trials import Case
 
 AnyName = TypeVar("AnyName", bound=str | Path | Method)
 
@@ -29,6 +31,10 @@ USUAL_LAWS: tuple[Law, ...] = ("lugre", "elasto_plastic", "gms")
 """Laws that are compared where none are named."""
 USUAL_RUNS = 10_000
 """Parts that are tried where no number is given."""
+
+
+def _own_variation(values: dict[str, Any]) -> list[VariationKind]:
+    return [values["population"].variation]
 
 
 class Asked(StudyModel):
@@ -42,8 +48,12 @@ class Asked(StudyModel):
     """Ways to free them, each with a name of its own."""
     laws: list[Law] = Field(default_factory=lambda: list(USUAL_LAWS), min_length=1)
     """Friction laws of their joints; the courses of single parts are shown under the first."""
+    variations: Annotated[list[VariationKind], Field(min_length=1)] = Field(
+        default_factory=_own_variation
+    )
+    """How their friction varies; every law is asked with each. Left out: as the population says."""
     runs: Annotated[int, Field(ge=1, lt=RUNS_MAX)] = USUAL_RUNS
-    """How many parts each method tries under each law."""
+    """How many parts each method tries under each law, with each variation."""
     first: Annotated[int, Field(ge=0, lt=2**62)] = 0
     """Number of the first of them."""
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
@@ -56,7 +66,12 @@ class Asked(StudyModel):
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
         names = [method.name for method in self.methods]
-        for kind, given in (("methods", names), ("laws", self.laws), ("baselines", self.baselines)):
+        for kind, given in (
+            ("methods", names),
+            ("laws", self.laws),
+            ("variations", self.variations),
+            ("baselines", self.baselines),
+        ):
             twice = next((name for name in given if list(given).count(name) > 1), None)
             if twice is not None:
                 raise ValueError(f"{kind}: {twice!r} is given twice; give each once")
@@ -67,8 +82,13 @@ class Asked(StudyModel):
 
     @property
     def numbers(self) -> range:
-        """Numbers of the parts that each method tries under each law."""
+        """Numbers of the parts that each method tries in each case."""
         return range(self.first, self.first + self.runs)
+
+    @property
+    def cases(self) -> list[Case]:
+        """Every law with every variation."""
+        return [Case(law, variation) for law in self.laws for variation in self.variations]
 
     @property
     def names(self) -> list[str]:
@@ -86,6 +106,7 @@ def ask(
     methods: Sequence[str | Path | Method] | str | None = None,
     *,
     laws: Sequence[str] | str | None = None,
+    variations: Sequence[str] | str | None = None,
     runs: int | range | None = None,
     seed: int | None = None,
     baselines: Sequence[str] | str | None = None,
@@ -98,17 +119,21 @@ def ask(
     Raises
     ------
     StudyError
-        A number or a law is not valid.
+        A number, a law or a variation is not valid.
     ScenarioError
         There is no such population or method, or it is not valid.
 
     """
     whole = _whole(population) if isinstance(population, str | Path) else None
-    lists = {"laws": _listed(laws), "baselines": _listed(baselines)}
+    lists = {
+        "laws": _listed(laws),
+        "variations": _listed(variations),
+        "baselines": _listed(baselines),
+    }
     given = {**_counted(runs), "seed": seed, **lists}
     values: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
-    for law in lists["laws"] or ():
-        _check_law(law)
+    for name, known in (("laws", LAWS), ("variations", VARIATIONS)):
+        _check_known(name, lists[name] or (), known)
     if whole is not None:
         values = {name: getattr(whole, name) for name in type(whole).model_fields} | values
     elif isinstance(population, PartPopulation):
@@ -136,12 +161,12 @@ def _listed(given: Sequence[AnyName] | AnyName | None) -> list[AnyName] | None:
     return list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [given]
 
 
-def _check_law(law: str) -> None:
-    if law in LAWS:
-        return
-    near = difflib.get_close_matches(str(law), LAWS, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    raise StudyError(f"laws: {shown(law)} is not one of {', '.join(LAWS)}{hint}")
+def _check_known(name: str, given: Sequence[str], known: Sequence[str]) -> None:
+    for word in given:
+        if word not in known:
+            near = difflib.get_close_matches(str(word), known, n=1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise StudyError(f"{name}: {shown(word)} is not one of {', '.join(known)}{hint}")
 
 
 def _whole(source: str | Path) -> Asked | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 from breakaway.ask.comparison.asked import Asked, ask
 from breakaway.ask.comparison.ending import ended, manifest_of, write_end
 from breakaway.ask.comparison.findings import notes_of, sentences_of
-from breakaway.ask.comparison.table import table_of
+from breakaway.ask.comparison.table import Trials, case_of, table_of
 from breakaway.ask.comparison.trial_pieces import (
     TrialPiece,
     pieces_of,
@@ -30,10 +30,9 @@ from breakaway.base.equality import ByValue
 from breakaway.base.one_line import OneLine, counted
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
-from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import PartPopulation
-from breakaway.run.trials import Trial, run_trial
+from breakaway.run.trials import Case, Trial, run_trial
 
 DRAWING = "figures and page"
 """What is done, in words, once all parts are tried."""
@@ -45,10 +44,10 @@ class Comparison(OneLine, ByValue):
 
     asked: Asked
     """Everything needed to run it again."""
-    trials: Mapping[str, Mapping[str, Trial]]
-    """Law -> name of a method -> what it did, part by part."""
+    trials: Trials
+    """Case (a law with a variation) -> name of a method -> what it did, part by part."""
     table: Sequence[Row]
-    """A row for each law and method."""
+    """A row for each case and method."""
     result: Sequence[str]
     """What it shows, in sentences."""
     notes: Sequence[str]
@@ -59,11 +58,12 @@ class Comparison(OneLine, ByValue):
     def __repr__(self) -> str:
         asked = self.asked
         methods, laws = counted(len(asked.names), "method"), counted(len(asked.laws), "law")
-        parts = counted(asked.runs, "part")
-        return f"<comparison on {asked.population.name!r}: {methods}, {laws}, {parts} each>"
+        variations = counted(len(asked.variations), "variation")
+        each = f"{counted(asked.runs, 'part')} each"
+        return f"<comparison on {asked.population.name!r}: {methods}, {laws}, {variations}, {each}>"
 
-    def row(self, law: str, method: str) -> Row:
-        """Give the row of a method under a law.
+    def row(self, law: str, method: str, *, variation: str | None = None) -> Row:
+        """Give the row of a method in a case.
 
         Parameters
         ----------
@@ -71,6 +71,8 @@ class Comparison(OneLine, ByValue):
             Friction law, as it was asked for.
         method : str
             Name of a method.
+        variation : str, optional
+            How friction varies, as it was asked for. Left out: the first that was.
 
         Raises
         ------
@@ -78,12 +80,40 @@ class Comparison(OneLine, ByValue):
             There is no such row.
 
         """
-        for row in self.table:
-            if (row["law"], row["method"]) == (law, method):
-                return row
+        check_arguments(Comparison.row, locals(), StudyError)
+        case = self._case(law, method, variation)
+        return next(r for r in self.table if (case_of(r), r["method"]) == (case, method))
+
+    def trial(self, law: str, method: str, *, variation: str | None = None) -> Trial:
+        """Give what a method did in a case, part by part.
+
+        Parameters
+        ----------
+        law : str
+            Friction law, as it was asked for.
+        method : str
+            Name of a method.
+        variation : str, optional
+            How friction varies, as it was asked for. Left out: the first that was.
+
+        Raises
+        ------
+        StudyError
+            There is no such trial.
+
+        """
+        check_arguments(Comparison.trial, locals(), StudyError)
+        return self.trials[self._case(law, method, variation)][method]
+
+    def _case(self, law: str, method: str, variation: str | None) -> Case:
+        asked = self.asked
+        how = asked.variations[0] if variation is None else variation
+        for case in asked.cases:
+            if (case.law, case.variation) == (law, how) and method in asked.names:
+                return case
         raise StudyError(
-            f"{law}, {method}: was not compared; the laws are {', '.join(self.asked.laws)}, the "
-            f"methods {', '.join(self.asked.names)}"
+            f"{law}, {how}, {method}: was not compared; the laws are {', '.join(asked.laws)}, the "
+            f"variations {', '.join(asked.variations)}, the methods {', '.join(asked.names)}"
         )
 
 
@@ -92,6 +122,7 @@ def compare_methods(
     methods: Sequence[str | Path | Method] | str | None = None,
     *,
     laws: Sequence[str] | str | None = None,
+    variations: Sequence[str] | str | None = None,
     runs: int | range | None = None,
     seed: int | None = None,
     baselines: Sequence[str] | str | None = None,
@@ -101,7 +132,7 @@ def compare_methods(
     progress: Callable[[Progress], None] | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> Comparison:
-    """Try methods of extraction on the same parts, under several friction laws.
+    """Try methods of extraction on the same parts, under several friction laws and variations.
 
     With a folder, ``manifest.json`` comes first, then the pieces as they finish (Parquet), then
     ``table.csv``, figures, the page ``index.html``, ``comparison.toml``, and last
@@ -119,8 +150,12 @@ def compare_methods(
     laws : sequence of str, optional
         Friction laws of the joints; single parts are shown under the first. Left out: ``lugre``,
         ``elasto_plastic`` and ``gms``.
+    variations : sequence of str, optional
+        How friction varies, each with every law: ``field`` (along the way), ``part`` (from part to
+        part), ``none`` and ``paper_random_factor`` (anew in time, as in the paper). Left out: as
+        the population says, and nothing else.
     runs : int or range, optional
-        How many parts each method tries under each law, or the numbers of these parts. Left out:
+        How many parts each method tries in each case, or the numbers of these parts. Left out:
         the first 10,000.
     seed : int, optional
         Seed of parts, disturbances and noise. Left out: 0.
@@ -146,7 +181,8 @@ def compare_methods(
     Raises
     ------
     StudyError
-        A law or a number is not valid, or the folder holds another comparison; nothing has run.
+        A law, a variation or a number is not valid, or the folder holds another comparison; nothing
+        has run.
     ScenarioError
         There is no such population or method, or it is not valid.
     OutputError
@@ -164,13 +200,21 @@ def compare_methods(
     """
     check_arguments(compare_methods, locals(), StudyError)
     thread_count(threads)
-    asked = ask(population, methods, laws=laws, runs=runs, seed=seed, baselines=baselines)
+    asked = ask(
+        population,
+        methods,
+        laws=laws,
+        variations=variations,
+        runs=runs,
+        seed=seed,
+        baselines=baselines,
+    )
     folder = None if out is None else Path(out)
     with _held(folder, asked, resume=resume) as journal:
         runner = Runner(
             journal,
             "comparison",
-            runs_max=len(asked.laws) * len(asked.methods) * asked.runs,
+            runs_max=len(asked.cases) * len(asked.methods) * asked.runs,
             progress=progress,
             notice=notice,
         )
@@ -187,9 +231,9 @@ def compare_methods(
 @contextmanager
 def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[Journal | None]:
     """Check every method before anything runs, hold the folder, and give its journal."""
-    for law in asked.laws:
+    for case in asked.cases:
         for method in asked.methods:
-            _check(asked, method, law)
+            _check(asked, method, case)
     if folder is None:
         yield None
         return
@@ -197,15 +241,14 @@ def _held(folder: Path | None, asked: Asked, *, resume: bool) -> Iterator[Journa
         yield journal
 
 
-def _check(asked: Asked, method: Method, law: Law) -> None:
-    """Raise unless a method and a law make a scenario."""
+def _check(asked: Asked, method: Method, case: Case) -> None:
+    """Raise unless a method and a case make a scenario."""
     empty = {name: np.array([value]) for name, value in asked.population.nominal.items()}
-    Trial(asked.population, method, law, asked.seed, range(1), empty, {}).scenario(0)
+    how = (case.law, case.variation)
+    Trial(asked.population, method, *how, asked.seed, range(1), empty, {}).scenario(0)
 
 
-def _concluded(
-    asked: Asked, trials: Mapping[str, Mapping[str, Trial]], folder: Path | None
-) -> Comparison:
+def _concluded(asked: Asked, trials: Trials, folder: Path | None) -> Comparison:
     table = table_of(trials, asked.baselines)
     return Comparison(
         asked=asked,
@@ -217,24 +260,22 @@ def _concluded(
     )
 
 
-def _trials_of(
-    asked: Asked, runner: Runner, folder: Path | None, threads: int | None
-) -> Mapping[str, Mapping[str, Trial]]:
-    """Give all trials, by law and name of the method, piece by piece; what is on disk is read."""
-    found: dict[str, dict[str, list[Trial]]] = {}
+def _trials_of(asked: Asked, runner: Runner, folder: Path | None, threads: int | None) -> Trials:
+    """Give all trials, by case and name of the method, piece by piece; what is on disk is read."""
+    found: dict[Case, dict[str, list[Trial]]] = {}
     for piece in pieces_of(asked):
         name = runner.next_piece()
-        runner.doing = f"{piece.method.name}, {piece.law}"
+        runner.doing = f"{piece.method.name}, {piece.case.law}, {piece.case.variation}"
         if folder is not None and runner.found(name, len(piece.runs), f"{len(piece.runs)} parts"):
             trial = read_trial(folder / name, asked, piece)
         else:
             trial = _computed(asked, piece, name, runner, threads)
-        found.setdefault(piece.law, {}).setdefault(piece.method.name, []).append(trial)
+        found.setdefault(piece.case, {}).setdefault(piece.method.name, []).append(trial)
     runner.pieces_alone()
     return MappingProxyType(
         {
-            law: MappingProxyType({name: _joined(trials) for name, trials in by_method.items()})
-            for law, by_method in found.items()
+            case: MappingProxyType({name: _joined(trials) for name, trials in by_method.items()})
+            for case, by_method in found.items()
         }
     )
 
@@ -245,7 +286,8 @@ def _computed(
     trial = run_trial(
         asked.population,
         piece.method,
-        law=piece.law,
+        law=piece.case.law,
+        variation=piece.case.variation,
         runs=piece.runs,
         seed=asked.seed,
         threads=threads,
@@ -264,6 +306,7 @@ def _joined(trials: Sequence[Trial]) -> Trial:
         population=first.population,
         method=first.method,
         law=first.law,
+        variation=first.variation,
         seed=first.seed,
         runs=range(first.runs.start, last.runs.stop),
         parts={n: np.concatenate([t.parts[n] for t in trials]) for n in first.parts},

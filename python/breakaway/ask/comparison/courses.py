@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from breakaway.ask.comparison.table import Trials, median_row, worst_row
 from breakaway.model.friction.curve import breakaway_force
+from breakaway.run.field import friction_field
 from breakaway.run.finished import Run
-from breakaway.run.trials import Trial
+from breakaway.run.trials import Case, Trial
 from breakaway.show.plots.comparison import Course
 
 Array = NDArray[np.float64]
@@ -38,11 +39,11 @@ class Courses:
     """The part with the largest jump."""
 
 
-def courses_of(trials: Trials) -> dict[str, dict[str, Courses]]:
-    """Simulate two parts of each method again under each law, with their traces."""
+def courses_of(trials: Trials) -> dict[Case, dict[str, Courses]]:
+    """Simulate two parts of each method again in each case, with their traces."""
     return {
-        law: {name: _courses(trial) for name, trial in by_method.items()}
-        for law, by_method in trials.items()
+        case: {name: _courses(trial) for name, trial in by_method.items()}
+        for case, by_method in trials.items()
     }
 
 
@@ -66,7 +67,7 @@ def course_of(trial: Trial, row: int) -> Course:
     return Course(
         run_index=trial.runs[row],
         released=bool(trial.released[row]),
-        stiction_n=quantities["stiction_n"],
+        stiction_n=run.scenario.joint.stiction_n,
         length_m=quantities["engagement_length_m"],
         mass_kg=quantities["mass_kg"],
         jump_m=run.metrics.largest_jump_m,
@@ -142,6 +143,17 @@ def _columns(run: Run, rows: Rows) -> dict[str, Array]:
         "t_s": run.trace["t_s"][rows],
         "position_m": x,
         "force_n": run.trace["applied_force_n"][rows],
-        "breakaway_n": breakaway_force(run.scenario.joint, x),
+        "breakaway_n": _breakaway_n(run, x),
         **{name: run.trace[name][rows] for name in axis},
     }
+
+
+def _breakaway_n(run: Run, x: Array) -> Array:
+    """Give the force that breaks the joint loose at each place: what varies along the way, too.
+
+    What is redrawn in time is left out.
+    """
+    force_n = breakaway_force(run.scenario.joint, x)
+    if run.scenario.disturbance.kind != "field":
+        return force_n
+    return force_n * friction_field(run.scenario, x, run_index=run.run_index).factor

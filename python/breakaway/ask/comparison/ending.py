@@ -21,8 +21,8 @@ from breakaway.ask.studies.plan import Row
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
 from breakaway.drawing.style import save_figure
-from breakaway.model.scenario.laws import LAW_WORDS
-from breakaway.run.trials import TRIAL_METRICS
+from breakaway.model.scenario.variation import VARIATION_WORDS, VariationKind
+from breakaway.run.trials import TRIAL_METRICS, Case
 from breakaway.show.plots.comparison import Cloud, plot_course, plot_scatter, plot_shares
 from breakaway.show.report.comparison import ShownFigure, comparison_page
 
@@ -66,7 +66,7 @@ def write_end(
         page = comparison_page(
             population=asked.population,
             methods=asked.methods,
-            laws=asked.laws,
+            cases=asked.cases,
             runs=asked.runs,
             seed=asked.seed,
             table=table,
@@ -74,8 +74,8 @@ def write_end(
             notes=notes,
             figures=figures,
             courses={
-                law: {name: found.worst for name, found in by_method.items()}
-                for law, by_method in courses.items()
+                case: {name: found.worst for name, found in by_method.items()}
+                for case, by_method in courses.items()
             },
         )
         (staging / PAGE).write_text(page, encoding="utf-8", newline="\n")
@@ -85,6 +85,7 @@ def write_end(
         "population": asked.population.name,
         "methods": asked.names,
         "laws": asked.laws,
+        "variations": asked.variations,
         "runs": asked.runs,
         "seed": asked.seed,
         "breakaway_version": __version__,
@@ -100,11 +101,10 @@ def _draw(
     asked: Asked,
     trials: Trials,
     table: Sequence[Row],
-    courses: Mapping[str, Mapping[str, Courses]],
+    courses: Mapping[Case, Mapping[str, Courses]],
     folder: Path,
 ) -> list[ShownFigure]:
     """Draw and save every figure, and give what the page shows of them."""
-    limits = asked.population.gentle, asked.population.strict
     shown = [
         _saved(
             "shares",
@@ -114,50 +114,56 @@ def _draw(
             "Share of the parts, with its 95 % interval (Clopper and Pearson); all methods try "
             "the same parts.",
         ),
-        _saved(
-            "jump_against_peak",
-            plot_scatter(_clouds(trials), *limits),
-            folder,
-            "Jump against peak force, part by part.",
-            "Each point is a part: its largest jump over its largest force as a multiple of its "
-            "own breakaway force. Boxes: the gentle and, dashed, the strict limits; points within "
-            "may still fail by their velocity. Crosses: parts left in place.",
-        ),
+        *(_drawn_clouds(asked, trials, variation, folder) for variation in asked.variations),
     ]
-    for law, by_method in courses.items():
+    for case, by_method in courses.items():
         for place, (name, found) in enumerate(by_method.items()):
             figure = plot_course(found.median, found.worst)
             shown.append(
                 _saved(
-                    f"course_{place + 1}_{law}",
+                    f"course_{place + 1}_{case.key}",
                     figure,
                     folder,
-                    f"{name}, {LAW_WORDS[law]}.",
+                    f"{name}, {case.words}.",
                     "Force and position of the part in the middle by its largest jump, of those "
                     "that came free; of the part with the largest jump; and of that part around "
                     "its worst slip, which is shaded. Dashed: the force that would break the joint "
                     "loose where the part is. Where the tip of a feed axis is behind the part, it "
                     "does not push.",
                     method=name,
-                    law=law,
+                    case=case,
                 )
             )
     return shown
 
 
-def _clouds(trials: Trials) -> list[Cloud]:
-    return [
+def _drawn_clouds(
+    asked: Asked, trials: Trials, variation: VariationKind, folder: Path
+) -> ShownFigure:
+    """Draw every part of every method and law, with one variation."""
+    limits = asked.population.gentle, asked.population.strict
+    clouds = [
         Cloud(
-            law=law,
+            case=case,
             method=name,
             peak=trial.metrics["peak_over_breakaway"],
             jump_m=trial.metrics["largest_jump_m"],
             released=trial.released,
             gentle=trial.within(trial.population.gentle),
         )
-        for law, by_method in trials.items()
+        for case, by_method in trials.items()
         for name, trial in by_method.items()
+        if case.variation == variation
     ]
+    return _saved(
+        f"jump_against_peak_{variation}",
+        plot_scatter(clouds, *limits),
+        folder,
+        f"Jump against peak force, part by part; friction {VARIATION_WORDS[variation]}.",
+        "Each point is a part: its largest jump over its largest force as a multiple of its own "
+        "breakaway force. Boxes: the gentle and, dashed, the strict limits; points within may "
+        "still fail by their velocity. Crosses: parts left in place.",
+    )
 
 
 def _saved(
@@ -167,9 +173,9 @@ def _saved(
     title: str,
     caption: str,
     method: str = "",
-    law: str = "",
+    case: Case | None = None,
 ) -> ShownFigure:
     for suffix in ("svg", "png"):
         save_figure(figure, folder / f"{key}.{suffix}")
         figure.set_layout_engine("none")  # it is laid out by now
-    return ShownFigure(key, title, caption, folder / f"{key}.svg", method, law)
+    return ShownFigure(key, title, caption, folder / f"{key}.svg", method, case)

@@ -1,4 +1,4 @@
-"""What a comparison shows, in sentences; what holds only under some friction laws is flagged."""
+"""What a comparison shows, in sentences; what holds only in some cases is flagged."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from itertools import combinations
 
 from breakaway.ask.comparison.asked import Asked
-from breakaway.ask.comparison.table import CRITERIA, Trials, paired, rank
+from breakaway.ask.comparison.case_words import cases_in_words, listing
+from breakaway.ask.comparison.table import CRITERIA, Trials, case_of, paired, rank
 from breakaway.ask.studies.plan import Row
+from breakaway.model.scenario.variation import VARIATIONS
+from breakaway.run.trials import Case
 
 SURE = 0.05
-"""Chance, over all pairs and laws, that a difference is called clear where there is none."""
+"""Chance, over all pairs and cases, that a difference is called clear where there is none."""
 GENTLE_ENOUGH = 0.95
 """Share of gentle extractions below which it is said what fails a method."""
 WORDS = {"gentle": "gently", "strict": "within the strict limits"}
@@ -20,25 +23,28 @@ CRITERION_WORDS = {
     "velocity": "the release velocity",
 }
 
-Verdicts = dict[tuple[str, str], dict[str, int]]
-"""Two methods -> law -> 1 where the first is clearly gentler, -1 the second, 0 neither."""
+Verdicts = dict[tuple[str, str], dict[Case, int]]
+"""Two methods -> case -> 1 where the first is clearly gentler, -1 the second, 0 neither."""
+Leaders = dict[Case, tuple[str, ...]]
+"""Case -> the methods that no other is clearly better than, the best first."""
 
 
 def sentences_of(asked: Asked, trials: Trials, rows: Sequence[Row]) -> list[str]:
-    """Say what was found: the gentlest, why the others fail, and what depends on the law."""
+    """Say what was found: the gentlest, why the others fail, and what depends on the case."""
     return [
         *_leading(asked, trials, rows, "gentle"),
         *_leading(asked, trials, rows, "strict"),
         *_changing(asked, trials),
+        *_one_variation(asked),
         *_failing(asked, rows),
         *_left_behind(asked, rows),
-        *_stopped(rows),
+        *_stopped(asked, rows),
     ]
 
 
 def notes_of(asked: Asked) -> list[str]:
     """Say what has to be known before the sentences are trusted."""
-    pairs = len(asked.methods) * (len(asked.methods) - 1) // 2 * len(asked.laws)
+    pairs = len(asked.methods) * (len(asked.methods) - 1) // 2 * len(asked.cases)
     notes = [
         f"a part is freed gently if it is released and suffers at most {_limits(asked, 'gentle')}",
         f"the strict limits are {_limits(asked, 'strict')}",
@@ -65,95 +71,137 @@ def _limits(asked: Asked, name: str) -> str:
 
 
 def verdicts_of(asked: Asked, trials: Trials, name: str) -> Verdicts:
-    """Judge every pair of methods under every law, by the parts that only one of them spares."""
+    """Judge every pair of methods in every case, by the parts that only one of them spares."""
     pairs = list(combinations(asked.names, 2))
-    allowed = SURE / max(1, len(pairs) * len(asked.laws))
+    allowed = SURE / max(1, len(pairs) * len(asked.cases))
     verdicts: Verdicts = {}
     for one, other in pairs:
-        for law in asked.laws:
-            ours, theirs, p = paired(trials[law][one], trials[law][other])[name]
+        for case in asked.cases:
+            ours, theirs, p = paired(trials[case][one], trials[case][other])[name]
             sign = (ours > theirs) - (ours < theirs)
-            verdicts.setdefault((one, other), {})[law] = sign if p < allowed else 0
+            verdicts.setdefault((one, other), {})[case] = sign if p < allowed else 0
     return verdicts
 
 
 def _leading(asked: Asked, trials: Trials, rows: Sequence[Row], name: str) -> list[str]:
-    """Say which methods no other is clearly better than, by law."""
+    """Say which methods no other is clearly better than, by case."""
     if len(asked.methods) < 2:
         return []
-    verdicts = verdicts_of(asked, trials, name)
-    leaders: dict[str, tuple[str, ...]] = {}
-    for law in asked.laws:
-        of_law = sorted((r for r in rows if r["law"] == law), key=rank, reverse=True)
-        best = max(of_law, key=lambda row: row[name])["method"]
-        first = [r["method"] for r in of_law if not _beats(verdicts, best, r["method"], law)]
-        leaders[law] = tuple(sorted(first, key=lambda m: m != best))
-    shares = {(r["law"], r["method"]): r for r in rows}
-    groups: dict[frozenset[str], list[str]] = {}
-    for held, methods in leaders.items():
-        groups.setdefault(frozenset(methods), []).append(held)
+    leaders = _leaders(asked, verdicts_of(asked, trials, name), rows, name)
+    shares = {(case_of(r), r["method"]): r for r in rows}
+    groups: dict[frozenset[str], list[Case]] = {}
+    for case, methods in leaders.items():
+        groups.setdefault(frozenset(methods), []).append(case)
     said = [
-        _leader_sentence(asked, leaders[laws[0]], laws, shares, name) for laws in groups.values()
+        _leader_sentence(asked, leaders[cases[0]], cases, shares, name) for cases in groups.values()
     ]
-    if len(groups) > 1:
-        said.append(
-            f"CAUTION: which method frees most parts {WORDS[name]} depends on the friction law; do "
-            "not rely on one law"
-        )
-    return said
+    return said + [
+        f"CAUTION: which method frees most parts {WORDS[name]} depends on {reason}"
+        for reason in _reasons(asked, leaders)
+    ]
 
 
-def _beats(verdicts: Verdicts, one: str, other: str, law: str) -> bool:
+def _leaders(asked: Asked, verdicts: Verdicts, rows: Sequence[Row], name: str) -> Leaders:
+    leaders: Leaders = {}
+    for case in asked.cases:
+        of_case = sorted((r for r in rows if case_of(r) == case), key=rank, reverse=True)
+        best = max(of_case, key=lambda row: row[name])["method"]
+        first = [r["method"] for r in of_case if not _beats(verdicts, best, r["method"], case)]
+        leaders[case] = tuple(sorted(first, key=lambda m: m != best))
+    return leaders
+
+
+def _reasons(asked: Asked, leaders: Leaders) -> list[str]:
+    """Say what the leading methods depend on: the law, with the same variation; or the latter."""
+    first = {case: frozenset(methods) for case, methods in leaders.items()}
+    by_variation = [{first[Case(law, how)] for law in asked.laws} for how in asked.variations]
+    by_law = [{first[Case(law, how)] for how in asked.variations} for law in asked.laws]
+    reasons = []
+    if any(len(found) > 1 for found in by_variation):
+        reasons.append("the friction law; do not rely on one law")
+    if any(len(found) > 1 for found in by_law):
+        reasons.append("how friction varies; do not rely on one variation")
+    return reasons
+
+
+def _beats(verdicts: Verdicts, one: str, other: str, case: Case) -> bool:
     if one == other:
         return False
     if (one, other) in verdicts:
-        return verdicts[one, other][law] > 0
-    return verdicts[other, one][law] < 0
+        return verdicts[one, other][case] > 0
+    return verdicts[other, one][case] < 0
 
 
 def _leader_sentence(
     asked: Asked,
     methods: Sequence[str],
-    laws: Sequence[str],
-    shares: dict[tuple[str, str], Row],
+    cases: Sequence[Case],
+    shares: dict[tuple[Case, str], Row],
     name: str,
 ) -> str:
-    where = _under(asked, laws)
-    if all(shares[law, method][name] == 0 for law in laws for method in methods):
+    where = f"under {cases_in_words(cases, asked.cases)}"
+    if all(shares[case, method][name] == 0 for case in cases for method in methods):
         return f"no method frees any part {WORDS[name]} {where}"
-    parts = [f"{m} ({_range([shares[law, m][f'{name}_share'] for law in laws])})" for m in methods]
+    parts = [f"{m} ({_range([shares[c, m][f'{name}_share'] for c in cases])})" for m in methods]
     if len(methods) == 1:
         return f"{parts[0]} clearly frees most parts {WORDS[name]} {where}"
     if len(methods) == len(asked.methods):
-        return (
-            f"no method clearly frees more parts {WORDS[name]} than another {where}: "
-            + _listing(parts)
+        return f"no method clearly frees more parts {WORDS[name]} than another {where}: " + listing(
+            parts
         )
-    return f"no method clearly frees more parts {WORDS[name]} than {_listing(parts)} {where}"
+    return f"no method clearly frees more parts {WORDS[name]} than {listing(parts)} {where}"
 
 
 def _changing(asked: Asked, trials: Trials) -> list[str]:
-    """Flag every pair whose order is clear under some laws and not the same under the others."""
-    if len(asked.laws) < 2:
+    """Flag every pair whose order is clear in some cases and not the same in the others."""
+    if len(asked.cases) < 2:
         return []
     said = []
-    for (one, other), by_law in verdicts_of(asked, trials, "gentle").items():
-        if len(set(by_law.values())) == 1:
+    for (one, other), by_case in verdicts_of(asked, trials, "gentle").items():
+        if len(set(by_case.values())) == 1:
             continue
         for first, second, sign in ((one, other, 1), (other, one, -1)):
-            held = [law for law, verdict in by_law.items() if verdict == sign]
-            turned = [law for law, verdict in by_law.items() if verdict == -sign]
-            even = [law for law, verdict in by_law.items() if verdict == 0]
+            held, turned, even = (
+                [case for case, verdict in by_case.items() if verdict == wanted]
+                for wanted in (sign, -sign, 0)
+            )
             if not held or (turned and sign < 0):
                 continue
-            but = [f"the other way round under {_listing(turned)}"] if turned else []
-            but += [f"not clearly under {_listing(even)}"] if even else []
-            only = "one law only" if len(held) == 1 else "some laws only"
+            but = [
+                f"{how} under {cases_in_words(cases, asked.cases)}"
+                for how, cases in (("the other way round", turned), ("not clearly", even))
+                if cases
+            ]
             said.append(
-                f"CAUTION, {only}: {first} is gentler than {second} under {_listing(held)}, "
-                + " and ".join(but)
+                f"CAUTION, {_only(asked, held)}: {first} is gentler than {second} under "
+                f"{cases_in_words(held, asked.cases)}, " + " and ".join(but)
             )
     return said
+
+
+def _only(asked: Asked, held: Sequence[Case]) -> str:
+    """Say whether all cases in which something holds share what others do not have."""
+    alone: list[str] = []
+    several: list[str] = []
+    for name, everyone, found in (
+        ("law", asked.laws, {case.law for case in held}),
+        ("variation", asked.variations, {case.variation for case in held}),
+    ):
+        if len(everyone) > 1:
+            (alone if len(found) == 1 else several).append(name)
+    if alone:
+        return f"one {' and one '.join(alone)} only"
+    return f"some {' and '.join(f'{name}s' for name in several)} only"
+
+
+def _one_variation(asked: Asked) -> list[str]:
+    """Flag all of it where friction varied in one way alone."""
+    if len(asked.variations) > 1:
+        return []
+    return [
+        f"CAUTION: asked under one kind of variation ({asked.variations[0]}) alone; --variations "
+        f"{','.join(VARIATIONS)} shows what turns on it"
+    ]
 
 
 def _failing(asked: Asked, rows: Sequence[Row]) -> list[str]:
@@ -169,9 +217,8 @@ def _failing(asked: Asked, rows: Sequence[Row]) -> list[str]:
         gentle = _range([row["gentle_share"] for row in of_method])
         parts = []
         for name, found in by_criterion.items():
-            where = (
-                "" if len(by_criterion) == 1 else f" under {_listing([r['law'] for r in found])}"
-            )
+            cases = cases_in_words([case_of(row) for row in found], asked.cases)
+            where = f" under {cases}" if len(by_criterion) > 1 else ""
             kept = _range([row[f"{name}_share"] for row in found])
             parts.append(
                 f"{CRITERION_WORDS[name]}{where}, within its limit for {kept} of the parts"
@@ -200,25 +247,13 @@ def _left_behind(asked: Asked, rows: Sequence[Row]) -> list[str]:
     return said
 
 
-def _stopped(rows: Sequence[Row]) -> list[str]:
+def _stopped(asked: Asked, rows: Sequence[Row]) -> list[str]:
     return [
         f"the watch stopped {row['method']} on {row['stopped']} of {row['runs']} parts under "
-        f"{row['law']}"
+        f"{cases_in_words([case_of(row)], asked.cases)}"
         for row in rows
         if row["stopped"]
     ]
-
-
-def _under(asked: Asked, laws: Sequence[str]) -> str:
-    if len(laws) == len(asked.laws) > 1:
-        return "under every law"
-    return f"under {_listing(laws)}"
-
-
-def _listing(words: Sequence[str]) -> str:
-    if len(words) < 2:
-        return "".join(words)
-    return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _range(shares: Sequence[float]) -> str:

@@ -1,4 +1,4 @@
-"""The numbers of a comparison: a row for each law and method, each against the best of the rest."""
+"""The numbers of a comparison: a row for each case and method, against the best of the rest."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from breakaway.ask.studies.plan import Row
 from breakaway.ask.studies.statistics import clopper_pearson, mcnemar, median_interval
 from breakaway.model.scenario.population import Gentleness
-from breakaway.run.trials import Trial
+from breakaway.run.trials import Case, Trial
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -53,20 +53,25 @@ LOWER_IS_BETTER = (
 HIGHER_IS_BETTER = (*(f"{name}_share" for name in SHARES), *(f"{name}_share" for name in CRITERIA))
 """Columns whose highest value is the best."""
 
-Trials = Mapping[str, Mapping[str, Trial]]
-"""Law -> name of a method -> what it did."""
+Trials = Mapping[Case, Mapping[str, Trial]]
+"""Case -> name of a method -> what it did."""
 
 
 def table_of(trials: Trials, baselines: Sequence[str]) -> list[Row]:
-    """Give a row for each law and method, in their order."""
+    """Give a row for each case and method, in their order."""
     rows: list[Row] = []
-    for law, by_method in trials.items():
-        of_law = [_row(law, name, trial) for name, trial in by_method.items()]
-        for row in of_law:
-            _add_pairing(row, of_law, by_method, baselines or list(by_method))
-        _add_best(of_law)
-        rows += of_law
+    for case, by_method in trials.items():
+        of_case = [_row(case, name, trial) for name, trial in by_method.items()]
+        for row in of_case:
+            _add_pairing(row, of_case, by_method, baselines or list(by_method))
+        _add_best(of_case)
+        rows += of_case
     return rows
+
+
+def case_of(row: Mapping[str, Any]) -> Case:
+    """Give the case of a row."""
+    return Case(row["law"], row["variation"])
 
 
 def criterion_met(trial: Trial, criterion: str, limits: Gentleness) -> Mask:
@@ -96,10 +101,10 @@ def median_row(trial: Trial) -> int | None:
     return int(rows[order[(len(rows) - 1) // 2]])
 
 
-def _row(law: str, method: str, trial: Trial) -> Row:
+def _row(case: Case, method: str, trial: Trial) -> Row:
     gentle, strict = trial.population.gentle, trial.population.strict
     runs, median = len(trial.runs), median_row(trial)
-    row: Row = {"law": law, "method": method, "runs": runs}
+    row: Row = {"law": case.law, "variation": case.variation, "method": method, "runs": runs}
     for name, mask in zip(
         SHARES, (trial.released, trial.within(gentle), trial.within(strict)), strict=True
     ):
@@ -145,10 +150,10 @@ def rank(row: Mapping[str, Any]) -> tuple[int, int, float]:
 
 
 def _add_pairing(
-    row: Row, of_law: Sequence[Row], by_method: Mapping[str, Trial], baselines: Sequence[str]
+    row: Row, of_case: Sequence[Row], by_method: Mapping[str, Trial], baselines: Sequence[str]
 ) -> None:
     """Compare a method with the best of the others, part by part."""
-    rivals = [r for r in of_law if r["method"] in baselines and r["method"] != row["method"]]
+    rivals = [r for r in of_case if r["method"] in baselines and r["method"] != row["method"]]
     best = max(rivals, key=rank, default=None)
     row["against"] = None if best is None else best["method"]
     for name in ("gentle", "strict"):
@@ -168,19 +173,19 @@ def paired(one: Trial, other: Trial) -> dict[str, tuple[int, int, float]]:
     return found
 
 
-def _add_best(of_law: Sequence[Row]) -> None:
-    """Name the columns in which each method is the best of its law."""
-    for row in of_law:
+def _add_best(of_case: Sequence[Row]) -> None:
+    """Name the columns in which each method is the best of its case."""
+    for row in of_case:
         row["best"] = ""
-    if len(of_law) < 2:
+    if len(of_case) < 2:
         return
-    free = [row for row in of_law if row["released_share"] >= RELEASED_ENOUGH]
-    for names, rows, choose in ((HIGHER_IS_BETTER, of_law, max), (LOWER_IS_BETTER, free, min)):
+    free = [row for row in of_case if row["released_share"] >= RELEASED_ENOUGH]
+    for names, rows, choose in ((HIGHER_IS_BETTER, of_case, max), (LOWER_IS_BETTER, free, min)):
         for name in names:
             values = [row[name] for row in rows if row[name] is not None]
             best = choose(values, default=None)
             holders = [row for row in rows if row[name] is not None and row[name] == best]
-            if len(holders) == len(of_law) or (choose is max and best == 0.0):
+            if len(holders) == len(of_case) or (choose is max and best == 0.0):
                 continue  # says nothing
             for row in holders:
                 row["best"] += f"{';' if row['best'] else ''}{name}"

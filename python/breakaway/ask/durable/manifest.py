@@ -17,7 +17,7 @@ from breakaway.base.reading import read_json
 from breakaway.errors import StudyError
 
 MANIFEST = "manifest.json"
-FORMAT = 3
+FORMAT = 4
 """Number of the folder's layout."""
 DESCRIBING = ("name", "description")
 """Keys of what is asked that results do not depend on."""

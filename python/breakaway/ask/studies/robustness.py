@@ -189,10 +189,13 @@ def disturbance_in_words(scenario: Scenario, over: str) -> str:
         return "no disturbance"
     law = disturbance.law.replace("_", "-")
     size = "" if over == "disturbance.var" else f" of var = {disturbance.var:g}"
+    if disturbance.kind == "field":
+        length_mm = 1e3 * disturbance.correlation_length_m
+        return f"{law} field{size} along the way, correlation length {length_mm:g} mm"
     more = {
         name: value
         for name, value in disturbance.model_dump().items()
-        if name not in ("law", "var", "hold_s", "acts_on")
+        if name not in ("kind", "law", "var", "hold_s", "acts_on")
     }
     rest = "".join(f", {name} = {value:g}" for name, value in more.items())
     return (

@@ -81,6 +81,7 @@ def run_laws(
             tuning.population,
             method,
             law=law,
+            variation=tuning.variation,
             runs=parts,
             seed=tuning.seed,
             threads=threads,

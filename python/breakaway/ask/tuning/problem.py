@@ -20,6 +20,7 @@ from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.model import Name, Text
 from breakaway.model.scenario.population import PartPopulation
+from breakaway.model.scenario.variation import VariationKind
 from breakaway.run.trials import scenario_of
 
 EVALUATIONS_MAX = 10_000
@@ -140,6 +141,11 @@ class PartRange(StudyModel):
         return range(self.first, self.first + self.runs)
 
 
+def _own_variation(values: dict[str, Any]) -> VariationKind:
+    own: VariationKind = values["population"].variation
+    return own
+
+
 class Tuning(StudyModel):
     """A method, the ranges of some of its numbers, and the scores to improve.
 
@@ -172,6 +178,8 @@ class Tuning(StudyModel):
     its tables."""
     laws: Annotated[list[Law], Field(min_length=1)] = Field(default_factory=_lugre)
     """Friction laws of the joints. Every score is that of the law where it is worst."""
+    variation: VariationKind = Field(default_factory=_own_variation)
+    """How their friction varies. Left out: as the population says."""
     objectives: Annotated[list[Name], Field(min_length=1, max_length=4)]
     """Scores to improve: shares are made large, quantiles of metrics small."""
     constraints: Annotated[dict[str, ScoreBound], BeforeValidator(_bounds)] = Field(
@@ -252,7 +260,8 @@ class Tuning(StudyModel):
             raise StudyError(f"laws: {self.laws!r} names a law twice; name each law once")
         for law in self.laws:
             try:
-                scenario_of(self.population, self.method, law, seed=self.seed, steps=1)
+                asked = (self.population, self.method, law, self.variation)
+                scenario_of(*asked, seed=self.seed, steps=1)
             except ScenarioError as error:
                 raise StudyError(
                     f"method: does not fit the population under the law {law}: {error}"

@@ -11,6 +11,7 @@ from breakaway._core import __version__
 from breakaway.ask.tuning.evaluation import Evaluation, Laws, is_feasible, violations_of
 from breakaway.ask.tuning.problem import Tuning
 from breakaway.ask.tuning.scores import Score, ScoreKind, score_kind, worst_of
+from breakaway.model.scenario.variation import VARIATION_WORDS
 
 Row = dict[str, Any]
 WORST = "worst"
@@ -262,6 +263,7 @@ def notes(found: Found) -> list[str]:
         "optimistic, because the method was chosen by it",
         "a part that was not freed is infinitely bad in every quantile",
     ]
+    said.append(f"friction {VARIATION_WORDS[tuning.variation]} ({tuning.variation})")
     if len(tuning.laws) > 1:
         said.append(f"every score is that of the worst of {len(tuning.laws)} friction laws")
     if len(found.front) > 1:
@@ -284,6 +286,7 @@ def content_of(found: Found) -> Row:
         "population": tuning.population.name,
         "method": tuning.method.name,
         "laws": list(tuning.laws),
+        "variation": tuning.variation,
         "seed": tuning.seed,
         "sampler_seed": tuning.sampler_seed,
         "training_parts": [0, tuning.training_runs],

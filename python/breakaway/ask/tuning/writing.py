@@ -16,6 +16,7 @@ from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
 from breakaway.base.text import toml_comment
 from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.variation import VARIATION_WORDS
 
 EVALUATIONS, UNSEEN = RECORDS = (f"{PIECES}/evaluations.jsonl", f"{PIECES}/unseen.jsonl")
 """Finished evaluations, and scores on unseen parts."""
@@ -58,7 +59,8 @@ def method_toml(found: Found, evaluation: Evaluation, file: str) -> str:
     unseen = found.worst(found.unseen[evaluation.number])
     said = [
         f"# {toml_comment(tuning.method.name)}, tuned on {tuning.training_runs} parts of "
-        f"{toml_comment(tuning.population.name)}, laws {', '.join(tuning.laws)}:",
+        f"{toml_comment(tuning.population.name)}, laws {', '.join(tuning.laws)}, "
+        f"friction {VARIATION_WORDS[tuning.variation]}:",
         f"# evaluation {evaluation.number} of {len(found.evaluations)}.",
         "# Training and unseen scores:",
         *(

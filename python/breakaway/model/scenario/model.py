@@ -83,11 +83,15 @@ MOST_EXPLAINED = 10
 
 
 def explain(error: ValidationError, model: type[BaseModel]) -> str:
-    """One line for each invalid field: its path, its value, the valid range and the remedy."""
-    looked_at = error.errors()[:MOST_EXPLAINED]
+    """One line for each invalid field: its path, its value, the valid range and the remedy.
+
+    A field that would follow another one, which is not valid, has nothing wrong of its own.
+    """
+    wrong = [detail for detail in error.errors() if detail["type"] != "default_factory_not_called"]
+    looked_at = wrong[:MOST_EXPLAINED]
     lines = [*dict.fromkeys(_line(detail, model) for detail in looked_at)]
-    if error.error_count() > len(looked_at):
-        lines.append(f"and {error.error_count() - len(looked_at):,} more")
+    if len(wrong) > len(looked_at):
+        lines.append(f"and {len(wrong) - len(looked_at):,} more")
     return "\n".join(lines)
 
 

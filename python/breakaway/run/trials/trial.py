@@ -15,8 +15,9 @@ from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.method import Method
-from breakaway.model.scenario.population import QUANTITIES, Gentleness, PartPopulation
+from breakaway.model.scenario.population import OF_A_PART, Gentleness, PartPopulation
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.scenario.variation import VariationKind
 from breakaway.run.batch import check_batch_fits, run_columns
 from breakaway.run.finished import Run
 from breakaway.run.trials.parts import draw_parts, part_columns, scenario_of, steps_per_period
@@ -54,6 +55,8 @@ class Trial(OneLine, ByValue):
     """How they were freed."""
     law: Law
     """The friction law of their joints."""
+    variation: VariationKind
+    """How their friction varies."""
     seed: int
     """Seed of parts, disturbances and noise."""
     runs: range
@@ -65,7 +68,7 @@ class Trial(OneLine, ByValue):
 
     def __repr__(self) -> str:
         parts = counted(len(self.runs), "part")
-        where = f"{self.method.name!r} on {self.population.name!r}, {self.law}"
+        where = f"{self.method.name!r} on {self.population.name!r}, {self.law}, {self.variation}"
         return f"<trial of {where}: {int(self.released.sum()):,} of {parts} released>"
 
     @property
@@ -103,8 +106,9 @@ class Trial(OneLine, ByValue):
         place = self._row(i)
         row = {name: values[place : place + 1] for name, values in self.parts.items()}
         steps = int(steps_per_period(self.population, row)[0])
-        base = scenario_of(self.population, self.method, self.law, seed=self.seed, steps=steps)
-        columns = part_columns(self.population, self.method, self.law, row)
+        asked = (self.population, self.method, self.law, self.variation)
+        base = scenario_of(*asked, seed=self.seed, steps=steps)
+        columns = part_columns(*asked, row)
         return base.with_({path: float(values[0]) for path, values in columns.items()})
 
     def replay(self, i: int, *, trace_every: int = 1) -> Run:
@@ -135,6 +139,7 @@ def run_trial(
     method: Method,
     *,
     law: Law = "lugre",
+    variation: VariationKind | None = None,
     runs: int | range,
     seed: int,
     threads: int | None = None,
@@ -153,6 +158,9 @@ def run_trial(
         How they are freed.
     law : str, optional
         The friction law of their joints.
+    variation : {"field", "part", "paper_random_factor", "none"}, optional
+        How their friction varies: along the way, from part to part, anew in time as in the paper,
+        or not at all. Left out: as the population says.
     runs : int or range
         How many parts, starting at number 0; or their numbers. The same numbers and seed are the
         same parts for every method.
@@ -185,11 +193,13 @@ def run_trial(
     """
     check_arguments(run_trial, locals(), StudyError)
     workers = thread_count(threads)
+    variation = variation or population.variation
     numbers = run_numbers(runs)
-    check_batch_fits(numbers.stop - numbers.start, len(QUANTITIES), len(TRIAL_METRICS))
+    check_batch_fits(numbers.stop - numbers.start, len(OF_A_PART), len(TRIAL_METRICS))
     parts = draw_parts(population, numbers, seed=seed)
     steps = steps_per_period(population, parts)
     metrics = {name: np.full(len(numbers), np.nan) for name in TRIAL_METRICS}
+    asked = (population, method, law, variation)
     done = 0
 
     def tell(count: int) -> None:
@@ -200,11 +210,11 @@ def run_trial(
         rows = np.flatnonzero(steps == needed)
         rows = rows[np.argsort(-parts["engagement_length_m"][rows], kind="stable")]
         group = {name: values[rows] for name, values in parts.items()}
-        shared = scenario_of(population, method, law, seed=seed, steps=int(needed))
+        shared = scenario_of(*asked, seed=seed, steps=int(needed))
         batch = run_columns(
             shared,
             np.asarray(numbers.start + rows, dtype=np.uint64),
-            part_columns(population, method, law, group),
+            part_columns(*asked, group),
             TRIAL_METRICS,
             workers,
             tell,
@@ -212,4 +222,4 @@ def run_trial(
         for name in TRIAL_METRICS:
             metrics[name][rows] = batch.metrics[name]
         done += len(rows)
-    return Trial(population, method, law, seed, numbers, parts, metrics)
+    return Trial(*asked, seed, numbers, parts, metrics)

@@ -18,6 +18,8 @@ from breakaway.base import text
 from breakaway.drawing.style import COLORS, house_figure, house_style, scaled
 from breakaway.model.scenario.laws import LAW_WORDS
 from breakaway.model.scenario.population import Gentleness
+from breakaway.model.scenario.variation import VARIATION_WORDS
+from breakaway.run.trials import Case
 
 Row = Mapping[str, Any]
 Array = NDArray[np.float64]
@@ -34,10 +36,10 @@ _SHARES = (
 
 @dataclass(frozen=True)
 class Cloud:
-    """What a method did to many parts under a law, a point for each."""
+    """What a method did to many parts in a case, a point for each."""
 
-    law: str
-    """Friction law of the joints."""
+    case: Case
+    """Friction law of the joints, and how their friction varies."""
     method: str
     """Name of the method."""
     peak: Array
@@ -82,42 +84,53 @@ class Course:
 
 
 def plot_shares(rows: Sequence[Row]) -> Figure:
-    """Draw the shares of released, gentle and strict extractions, a panel for each law.
+    """Draw the shares of released, gentle and strict extractions, a panel for each case.
+
+    Laws stand side by side, variations below each other.
 
     Parameters
     ----------
     rows : sequence of mapping
-        One for each law and method, with shares and their intervals.
+        One for each case and method, with shares and their intervals.
 
     """
-    laws = list(dict.fromkeys(str(row["law"]) for row in rows))
-    methods = list(dict.fromkeys(str(row["method"]) for row in rows))
+    laws, variations, methods = (
+        list(dict.fromkeys(str(row[key]) for row in rows)) for key in ("law", "variation", "method")
+    )
     place = np.arange(len(methods))[::-1].astype(float)
     with house_style():
-        figure = house_figure(height=1.15 + 0.42 * max(2, len(methods)))
-        panels = np.atleast_1d(figure.subplots(1, len(laws), sharex=True, sharey=True))
-        for axes, law in zip(panels, laws, strict=True):
-            chosen = [row for row in rows if row["law"] == law]
-            for (name, color, marker, size, label), shift in zip(
-                _SHARES, (0.22, 0.0, -0.22), strict=True
-            ):
-                share, low, high = (
-                    np.array([100.0 * row[f"{name}_{key}"] for row in chosen])
-                    for key in ("share", "low", "high")
-                )
-                axes.hlines(place + shift, low, high, color=color, linewidth=2.0)
-                axes.plot(
-                    share, place + shift, marker, color=color, markersize=size, label=label,
-                    clip_on=False, zorder=3,
-                )  # fmt: skip
-            axes.set_title(LAW_WORDS.get(law, law), fontsize=9)
+        height = 0.15 + 0.42 * max(2, len(methods))
+        figure = house_figure(height=1.0 + height * len(variations))
+        panels = figure.subplots(
+            len(variations), len(laws), sharex=True, sharey=True, squeeze=False
+        )
+        for row in rows:
+            axes = panels[variations.index(row["variation"]), laws.index(row["law"])]
+            _draw_shares(axes, row, place[methods.index(row["method"])])
+        for axes in panels.flat:
             axes.set_xlim(-2.0, 102.0)
             axes.set_ylim(-0.6, len(methods) - 0.4)
-        panels[0].set_yticks(place, [text.label(name) for name in methods], fontsize=9)
+        for axes, law in zip(panels[0], laws, strict=True):
+            axes.set_title(LAW_WORDS.get(law, law), fontsize=9)
+        for axes, variation in zip(panels[:, 0], variations, strict=True):
+            axes.set_yticks(place, [text.label(name) for name in methods], fontsize=9)
+            axes.set_ylabel(f"friction\n{VARIATION_WORDS[variation]}", fontsize=8)
         figure.supxlabel("share of the parts (%)", fontsize=9)
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper right", ncols=3)
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        shown = dict(zip(labels, handles, strict=True))
+        figure.legend([*shown.values()], [*shown], loc="outside upper right", ncols=3)
     return figure
+
+
+def _draw_shares(axes: Axes, row: Row, place: float) -> None:
+    """Draw the shares of one method, with their intervals."""
+    for (name, color, marker, size, label), shift in zip(_SHARES, (0.22, 0.0, -0.22), strict=True):
+        share, low, high = (100.0 * row[f"{name}_{key}"] for key in ("share", "low", "high"))
+        axes.hlines(place + shift, low, high, color=color, linewidth=2.0)
+        axes.plot(
+            share, place + shift, marker, color=color, markersize=size, label=label,
+            clip_on=False, zorder=3,
+        )  # fmt: skip
 
 
 def plot_scatter(clouds: Sequence[Cloud], gentle: Gentleness, strict: Gentleness) -> Figure:
@@ -126,19 +139,19 @@ def plot_scatter(clouds: Sequence[Cloud], gentle: Gentleness, strict: Gentleness
     Parameters
     ----------
     clouds : sequence of Cloud
-        What each method did under each law.
+        What each method did under each law, with the same variation.
     gentle, strict : Gentleness
         Limits, drawn as boxes.
 
     """
-    laws = list(dict.fromkeys(cloud.law for cloud in clouds))
+    laws = list(dict.fromkeys(cloud.case.law for cloud in clouds))
     methods = list(dict.fromkeys(cloud.method for cloud in clouds))
     with house_style():
         figure = house_figure(height=1.1 + 1.5 * len(methods))
         panels = figure.subplots(len(methods), len(laws), sharex=True, sharey=True, squeeze=False)
         limits = _limits(clouds, gentle)
         for cloud in clouds:
-            axes = panels[methods.index(cloud.method), laws.index(cloud.law)]
+            axes = panels[methods.index(cloud.method), laws.index(cloud.case.law)]
             _draw_cloud(axes, cloud)
             _draw_boxes(axes, limits, gentle, strict)
         for axes, law in zip(panels[0], laws, strict=True):

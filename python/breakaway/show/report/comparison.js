@@ -4,15 +4,15 @@
   const scenes = JSON.parse(document.getElementById("courses").textContent);
   const byId = (id) => document.getElementById(id);
   const stage = byId("stage"), seek = byId("seek"), told = byId("told"), play = byId("play");
-  const choice = byId("scene"), slowed = byId("slowed"), laws = document.querySelectorAll("select.law");
+  const choice = byId("scene"), slowed = byId("slowed"), cases = document.querySelectorAll("select.case");
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
   const INK = "#1b1f24", SOFT = "#57606a", LINE = "#d8dee4", FORCE = "#0072B2", WAY = "#D55E00";
   const SLIP = "#F3D9C9", STEEL = "#aab4be", TIP = "#3d4650", DRIVE = "#009E73", PART = "#e8c9a0";
   const SLIP_PLAYS_S = 8, CALM_STEP_S = 0.5;
-  const state = { law: scenes[0].law, scene: 0, mode: "slip", time: 0, playing: false, loop: 0, last: 0, drawn: 0 };
+  const state = { case: scenes[0].case, scene: 0, mode: "slip", time: 0, playing: false, loop: 0, last: 0, drawn: 0 };
 
-  const ofLaw = () => scenes.filter((s) => s.law === state.law);
-  const current = () => ofLaw()[state.scene];
+  const ofCase = () => scenes.filter((s) => s.case === state.case);
+  const current = () => ofCase()[state.scene];
   const columns = () => current()[state.mode];
   const start = () => columns().t[0];
   const end = () => columns().t[columns().t.length - 1];
@@ -313,15 +313,15 @@
     show(start());
   }
 
-  function setLaw(law) {
-    state.law = law;
-    laws.forEach((select) => { select.value = law; });
-    document.querySelectorAll("figure[data-law]").forEach((figure) => { figure.hidden = figure.dataset.law !== law; });
+  function setCase(key) {
+    state.case = key;
+    cases.forEach((select) => { select.value = key; });
+    document.querySelectorAll("figure[data-case]").forEach((figure) => { figure.hidden = figure.dataset.case !== key; });
     reset();
   }
 
-  ofLaw().forEach((s, i) => choice.add(new Option(s.method, i)));
-  laws.forEach((select) => select.addEventListener("change", () => setLaw(select.value)));
+  ofCase().forEach((s, i) => choice.add(new Option(s.method, i)));
+  cases.forEach((select) => select.addEventListener("change", () => setCase(select.value)));
   choice.addEventListener("change", () => { state.scene = Number(choice.value); reset(); });
   document.querySelectorAll('input[name="mode"]').forEach((radio) =>
     radio.addEventListener("change", () => { state.mode = radio.value; reset(); }));
@@ -338,5 +338,5 @@
   calm.addEventListener("change", settle);
   window.addEventListener("resize", draw);
   settle();
-  setLaw(state.law);
+  setCase(state.case);
 })();

@@ -15,7 +15,9 @@ from breakaway._core import __version__
 from breakaway.model.scenario.laws import LAW_WORDS
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import PartPopulation
+from breakaway.model.scenario.variation import VARIATION_WORDS
 from breakaway.model.units import unit_of
+from breakaway.run.trials import Case
 from breakaway.show.plots.comparison import Course
 from breakaway.show.report.page import inline_svg, render
 
@@ -36,8 +38,8 @@ class ShownFigure:
     """Its file."""
     method: str = ""
     """Name of the method that it is about; none for figures of all."""
-    law: str = ""
-    """The friction law that it is about; none for figures of all."""
+    case: Case | None = None
+    """What it is under; none for figures of all."""
 
     @property
     def drawing(self) -> Markup:
@@ -72,14 +74,14 @@ def comparison_page(
     *,
     population: PartPopulation,
     methods: Sequence[Method],
-    laws: Sequence[str],
+    cases: Sequence[Case],
     runs: int,
     seed: int,
     table: Sequence[Row],
     result: Sequence[str],
     notes: Sequence[str],
     figures: Sequence[ShownFigure],
-    courses: Mapping[str, Mapping[str, Course]],
+    courses: Mapping[Case, Mapping[str, Course]],
 ) -> str:
     """Write the page of a comparison, as self-contained HTML.
 
@@ -89,20 +91,20 @@ def comparison_page(
         Where the parts are from.
     methods : sequence of Method
         What was tried on them.
-    laws : sequence of str
-        Friction laws of their joints.
+    cases : sequence of Case
+        Friction laws of their joints, with how their friction varies.
     runs : int
         How many parts.
     seed : int
         Seed of the draws.
     table : sequence of mapping
-        A row for each law and method.
+        A row for each case and method.
     result, notes : sequence of str
         What was found, and what to know before trusting it.
     figures : sequence of ShownFigure
         Figures, those of single methods after those of all.
     courses : mapping
-        Law -> name of a method -> how its worst part came out.
+        Case -> name of a method -> how its worst part came out.
 
     Returns
     -------
@@ -115,11 +117,14 @@ def comparison_page(
         version=__version__,
         population=population,
         methods=methods,
-        laws=laws,
-        law_words=LAW_WORDS,
+        cases=cases,
+        laws=len({case.law for case in cases}),
+        variations=list(dict.fromkeys(case.variation for case in cases)),
+        variation_words=VARIATION_WORDS,
+        case_words={case: _words(case, cases) for case in cases},
         runs=runs,
         seed=seed,
-        tables=[_table(law, table) for law in laws],
+        tables=[_table(case, table) for case in cases],
         result=result,
         notes=notes,
         overview=[figure for figure in figures if not figure.method],
@@ -131,12 +136,18 @@ def comparison_page(
     )
 
 
-def _table(law: str, rows: Sequence[Row]) -> dict[str, Any]:
-    """Give a law's table: headings, and cells with what is best in their column."""
-    of_law = [row for row in rows if row["law"] == law]
-    columns = [c for c in COLUMNS if c.unit not in STACK_UNITS or _any(of_law, c.keys)]
+def _words(case: Case, cases: Sequence[Case]) -> str:
+    """Name a case: by its law alone, where friction varies in the same way in all of them."""
+    same = len({one.variation for one in cases}) == 1
+    return LAW_WORDS[case.law] if same else case.words
+
+
+def _table(case: Case, rows: Sequence[Row]) -> dict[str, Any]:
+    """Give a case's table: headings, and cells with what is best in their column."""
+    of_case = [row for row in rows if Case(row["law"], row["variation"]) == case]
+    columns = [c for c in COLUMNS if c.unit not in STACK_UNITS or _any(of_case, c.keys)]
     return {
-        "law": law,
+        "case": case,
         "headings": [(column.heading, column.unit) for column in columns],
         "rows": [
             {
@@ -145,7 +156,7 @@ def _table(law: str, rows: Sequence[Row]) -> dict[str, Any]:
                     {"texts": column.show(row), "best": _bests(row, column)} for column in columns
                 ],
             }
-            for row in of_law
+            for row in of_case
         ],
     }
 
@@ -227,11 +238,11 @@ COLUMNS = (
 """Columns of the table; a spread's cell says the median, and the 99 % quantile below."""
 
 
-def _json(courses: Mapping[str, Mapping[str, Course]]) -> str:
+def _json(courses: Mapping[Case, Mapping[str, Course]]) -> str:
     """Give what the animation needs, as JSON that is safe within a page."""
     content = [
         {
-            "law": law,
+            "case": case.key,
             "method": name,
             "part": course.run_index,
             "released": course.released,
@@ -244,7 +255,7 @@ def _json(courses: Mapping[str, Mapping[str, Course]]) -> str:
             "whole": _columns(course.whole, 6),
             "slip": _columns(course.slip, 7),
         }
-        for law, by_method in courses.items()
+        for case, by_method in courses.items()
         for name, course in by_method.items()
     ]
     text = json.dumps(content, separators=(",", ":"), allow_nan=False)
