@@ -67,10 +67,15 @@ class PartDistributions(Model):
 
 
 class Gentleness(Model):
-    """The most that a part may suffer."""
+    """The most that a part may suffer.
+
+    The defaults of a population (1.5 times, 0.5 mm, 0.3 m/s; strictly 1.25, 0.25 mm, 0.1 m/s) are
+    assumed, not sourced.
+    """
 
     peak_over_breakaway_max: Positive
-    """Largest force over the part's own stiction force at the seat."""
+    """Largest force over the largest that friction can hold the part with, anywhere along its
+    guide."""
     jump_max_m: Positive
     """Largest uncontrolled travel in one slip, in m."""
     release_velocity_max_m_per_s: Positive
