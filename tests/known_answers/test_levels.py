@@ -95,9 +95,9 @@ def test_a_force_that_falls_lets_a_part_go_that_rests_under_a_push(joint, source
     """
     fall = {"time_s": [0.5, 1.0]}
     if source == "drift":
-        falling = joint.model_copy(update={"drift": bk.Drift(**fall, factor=[1.0, 0.5])})
+        falling = joint.model_copy(update={"drift": bk.DriftOverTime(**fall, factor=[1.0, 0.5])})
     elif source == "course":
-        force = bk.CourseNormalForce(**fall, force_n=[NORMAL_N, 0.5 * NORMAL_N])
+        force = bk.NormalForceOverTime(**fall, force_n=[NORMAL_N, 0.5 * NORMAL_N])
         falling = with_force(joint, force)
     else:
         force = bk.TemperatureNormalForce(
@@ -110,17 +110,17 @@ def test_a_force_that_falls_lets_a_part_go_that_rests_under_a_push(joint, source
 
 
 def course_over_travel():
-    force = bk.CourseNormalForce(travel_m=[0.0, 0.05, 0.2], force_n=[2000.0, 3000.0, 600.0])
+    force = bk.NormalForceOverTravel(travel_m=[0.0, 0.05, 0.2], force_n=[2000.0, 3000.0, 600.0])
     return force, lambda _t, x: np.interp(x, [0.0, 0.05, 0.2], [1.0, 1.5, 0.3])
 
 
 def course_over_time():
-    force = bk.CourseNormalForce(time_s=[0.0, 0.5, 0.8], force_n=[2000.0, 3000.0, 1000.0])
+    force = bk.NormalForceOverTime(time_s=[0.0, 0.5, 0.8], force_n=[2000.0, 3000.0, 1000.0])
     return force, lambda t, _x: np.interp(t, [0.0, 0.5, 0.8], [1.0, 1.5, 0.5])
 
 
 def springs():
-    force = bk.SpringNormalForce(preload_n=2000.0, stiffness_n_per_m=1e6, opening_m_per_m=0.01)
+    force = bk.SpringNormalForce(preload_n=2000.0, stiffness_n_per_m=1e6, slope=0.01)
     return force, lambda _t, x: 1.0 - 1e4 * x / 2000.0
 
 
@@ -148,6 +148,6 @@ def test_sliding_friction_follows_the_normal_force(joint, source):
 
 
 def test_sliding_friction_drifts():
-    drift = bk.Drift(travel_m=[0.0, 0.1], factor=[1.0, 0.4])
+    drift = bk.DriftOverTravel(travel_m=[0.0, 0.1], factor=[1.0, 0.4])
     _, position_m, friction_n = fed(RIGID.model_copy(update={"drift": drift}))
     assert friction_n == pytest.approx(FRICTION_N * (1.0 - 6.0 * position_m), rel=1e-3)
