@@ -11,7 +11,14 @@ from breakaway.ask.studies.agreement import bisected, narrowed
 from breakaway.ask.studies.files import parse_study
 from breakaway.ask.studies.plans import plan_of
 from breakaway.ask.studies.statistics import mcnemar
-from breakaway.ask.studies.verdicts import compared, compared_shares, direction_of, verdict_of
+from breakaway.ask.studies.verdicts import (
+    compared,
+    compared_shares,
+    conclusion_of,
+    direction_of,
+    in_words,
+    verdict_of,
+)
 from breakaway.cli.app import app
 from breakaway.drawing.style import COLORS
 from breakaway.errors import StudyError
@@ -185,6 +192,95 @@ def test_a_disturbance_of_the_joint_force_moves_what_lugre_holds(tmp_path, short
     assert any("jolts it at every redraw" in note for note in done.summary["notes"])
 
 
+# How friction varies
+
+ASKED = ["joint_force", "friction_level", "field", "part", "none"]
+DISTURBED = {"disturbance": {"var": 0.3, "hold_s": 2e-3}}
+
+
+def disturbances_of(scenario, asked=ASKED, **table):
+    study = study_of(scenario, 8, {"disturbances": asked, "laws": ["lugre", "gms"], **table})
+    return {how: s.disturbance for (law, how, name), s in study.scenarios.items()
+            if (law, name) == ("gms", "weak")}  # fmt: skip
+
+
+def test_a_random_factor_becomes_what_is_asked(short):
+    found = disturbances_of(short.with_(**DISTURBED), correlation_length_m=1e-4)
+    redrawn = bk.UniformDisturbance(var=0.3, hold_s=2e-3)
+    assert found == {
+        "joint_force": redrawn,
+        "friction_level": redrawn.model_copy(update={"acts_on": "friction_level"}),
+        "field": bk.FieldDisturbance(var=0.3, correlation_length_m=1e-4),
+        "part": bk.UniformDisturbance(var=0.3, hold_s=0.2, acts_on="friction_level"),
+        "none": bk.UniformDisturbance(),
+    }
+
+
+def test_a_field_becomes_what_is_asked(short):
+    own = bk.FieldDisturbance(law="log_normal", var=0.2, correlation_length_m=3e-4)
+    found = disturbances_of(short.with_(disturbance=own))
+    assert found["field"] == own
+    assert found["joint_force"] == bk.UniformDisturbance(var=0.2, hold_s=1e-3)
+    assert found["part"] == bk.UniformDisturbance(var=0.2, hold_s=0.2, acts_on="friction_level")
+
+
+def test_a_factor_that_is_held_for_the_whole_run_is_one_of_the_part(tmp_path, short):
+    """Rigid friction with a factor held: the smallest force is 450 N times one number."""
+    variants = [{"name": "light"}, {"name": "heavy", "changes": {"part.mass_kg": 2.0}}]
+    agreement = {
+        "disturbances": ["part", "none"],
+        "laws": ["coulomb_stiction", "two_region"],
+        "smallest": SEARCH | {"resolution": 1.0},
+    }
+    done = run_study(study_of(short.with_(**DISTURBED), 12, agreement, variants), out=tmp_path)
+    rows = {(r["law"], r["disturbance"]): r for r in done.summary["tables"]["smallest"]}
+    still, held = (rows["coulomb_stiction", how] for how in ("none", "part"))
+    assert (still["p05"], still["p95"]) == (451.0, 451.0)
+    assert 315.0 <= held["p05"] < 400.0 and 500.0 < held["p95"] <= 586.0
+
+
+def test_what_is_not_drawn_is_certain(short):
+    scenario = short.with_(**DISTURBED)
+    both = study_of(scenario, 8, {"disturbances": ["none", "field"], "laws": ["lugre", "gms"]})
+    assert both.certain_under("gms", "none") and not both.certain_under("gms", "field")
+    assert not both.certain
+    alone = {"disturbances": ["none"], "laws": ["lugre", "gms"]}
+    assert study_of(scenario, 1, alone).certain
+    vary = {"disturbance.var": {"distribution": "uniform", "low": 0.1, "high": 0.3}}
+    assert study_of(scenario, 1, alone, vary=vary).certain
+    with pytest.raises(StudyError, match=r"would all be the same, .*agreement\.disturbances is none"):
+        study_of(scenario, 8, alone, vary=vary)
+    with pytest.raises(StudyError, match="give 6 or more"):
+        study_of(scenario, 1, {"disturbances": ["part"], "laws": ["lugre", "gms"]})
+
+
+def test_what_means_nothing_is_drawn_and_left_out(tmp_path, short):
+    vary = {
+        "disturbance.var": {"distribution": "uniform", "low": 0.1, "high": 0.3},
+        "disturbance.hold_s": {"distribution": "uniform", "low": 1e-3, "high": 3e-3},
+        "joint.stiction_n": NORMAL,
+    }
+    agreement = {"disturbances": ASKED, "laws": ["lugre", "gms"]}
+    study = study_of(short.with_(**DISTURBED), 6, agreement, vary=vary, metrics=["peak_force_n"])
+    done = run_study(study, out=tmp_path)
+    table = done.to_pandas()
+    left_out = {
+        how: {path for path in vary if rows[path].isna().all()}
+        for how, rows in table.groupby("disturbance")
+    }
+    assert left_out == {
+        "joint_force": set(),
+        "friction_level": set(),
+        "field": {"disturbance.hold_s"},
+        "part": {"disturbance.hold_s"},
+        "none": {"disturbance.hold_s", "disturbance.var"},
+    }
+    drawn = table.groupby(["law", "disturbance", "variant"])["joint.stiction_n"].apply(tuple)
+    assert len(set(drawn)) == 1
+    again = done.replay(0, 3)
+    assert again.metrics.peak_force_n in set(table[table.point == 0]["peak_force_n"])
+
+
 def test_a_study_that_was_run_runs_again_to_the_same_bytes(tmp_path, short):
     variants = [
         VIBRATED[0],
@@ -313,6 +409,29 @@ def test_verdicts_over_disturbances():
     assert verdict_of(said | {("gms", "joint_force"): "same"}) == "only lugre with joint_force"
 
 
+def test_a_verdict_names_what_is_redrawn_in_time():
+    cases = [(law, how) for law in ("lugre", "gms") for how in ASKED]
+    redrawn = ["lower", "lower", "same", "undecided", "same"]
+    assert verdict_of(dict(zip(cases, redrawn * 2, strict=True))) == "only redrawn in time"
+    of_lugre = verdict_of(dict(zip(cases, redrawn + ["undecided"] * 5, strict=True)))
+    assert of_lugre == "only lugre with redrawn in time"
+    field = ["same", "same", "lower", "same", "same"]
+    assert verdict_of(dict(zip(cases, field * 2, strict=True))) == "only field"
+
+
+def test_a_conclusion_says_that_it_turns_on_the_variation():
+    keys = ("difference", "difference_low", "difference_high", "relative", "relative_low",
+            "relative_high")  # fmt: skip
+    names = {"other": "b", "first": "a", "quantity": "peak_force_n"} | dict.fromkeys(keys, -0.2)
+    rows = [
+        names | {"law": law, "disturbance": how, "direction": way}
+        for law in ("lugre", "gms") for how, way in (("field", "lower"), ("none", "same"))
+    ]  # fmt: skip
+    conclusion = conclusion_of(rows)
+    assert (conclusion["verdict"], conclusion["turns_on"]) == ("only field", "disturbance")
+    assert "; it turns on how friction varies [lugre with field -20 %" in in_words(conclusion, rows)
+
+
 @pytest.mark.parametrize("gained", range(9))
 def test_shares_differ_exactly_where_mcnemar_says_so(gained):
     before = np.repeat([0.0, 1.0, 1.0], [gained, 8 - gained, 4])
@@ -353,6 +472,15 @@ WRONG = [
     ({"disturbances": ["friction_level"], "variants": [
         FORCES[0], {"name": "b", "changes": {"disturbance": {"acts_on": "joint_force"}}}]}, {},
      "disturbance.acts_on is also in agreement.disturbances; leave one out"),
+    ({"disturbances": ["field"], "variants": [
+        FORCES[0], {"name": "b", "changes": {"disturbance": {"kind": "field", "var": 0.1,
+                                                             "correlation_length_m": 1e-3}}}]}, {},
+     "disturbance.kind is also in agreement.disturbances; leave one out"),
+    ({"disturbances": ["fields"]}, {}, "'fields' is not one of 'joint_force', 'friction_level'"),
+    ({"disturbances": ["field"], "correlation_length_m": 0.0}, {}, "0.0 is not >= 1e-06"),
+    ({"disturbances": ["none"], "smallest": SEARCH | {"over": "disturbance.var", "low": 0.1,
+                                                     "high": 0.3, "resolution": 0.1}}, {},
+     "disturbance.var means nothing where agreement.disturbances has 'none'; leave one out"),
     ({}, {"runs": 9}, "runs: 9 runs of each variant would all be the same"),
     ({}, {"runs": 5, "vary": {"joint.stiction_n": NORMAL}}, "give 6 or more"),
     ({}, {"runs": 9, "vary": {"actuator.force_max_n": NORMAL}}, "force_max_n is also in vary"),

@@ -28,9 +28,7 @@ from breakaway.ask.studies.plan import (
 from breakaway.ask.studies.points import Columns, Draw, Point, parts_drawn
 from breakaway.ask.studies.study import Study
 from breakaway.ask.studies.verdicts import compared, compared_shares, conclusion_of, in_words
-from breakaway.errors import StudyError
 from breakaway.model.scenario.scenario import Scenario
-from breakaway.run.batch.columns import check_paths
 
 LAW, DISTURBANCE, VARIANT, STEP = "law", "disturbance", "variant", "step"
 """Columns that tell points apart; step 0 is the scenario as it stands, later ones are those of the
@@ -42,7 +40,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Places = NDArray[np.int64]
 Case = tuple[str, str, str]
-"""Law, what the disturbance multiplies, name of a variant."""
+"""Law, disturbance, name of a variant."""
 Passes = Callable[[int, Places], Mask]
 """Number of a step, places of levels by case and run -> which of them suffice."""
 
@@ -99,19 +97,18 @@ class AgreementPlan(Plan):
 
     def scenario_at(self, labels: Mapping[str, Level]) -> Scenario:
         """Give the scenario of a variant under a law."""
-        law, acts_on, variant = (str(labels[name]) for name in (LAW, DISTURBANCE, VARIANT))
-        return self.scenarios[law, acts_on, variant]
+        law, disturbance, variant = (str(labels[name]) for name in (LAW, DISTURBANCE, VARIANT))
+        return self.scenarios[law, disturbance, variant]
 
     def _point(self, case: Case, step: int, runs: range, levels: Array | None = None) -> Point:
         labels: dict[str, Level] = dict(zip((LAW, DISTURBANCE, VARIANT), case, strict=True)) | {
             STEP: step
         }
-        scenario = self.scenarios[case]
-        return Point(labels, scenario, runs, self._drawn(scenario, levels))
+        return Point(labels, self.scenarios[case], runs, self._drawn(case, levels))
 
-    def _drawn(self, scenario: Scenario, levels: Array | None) -> Draw:
-        """Draw the parts, without what the law has no place for, and with the levels to try."""
-        known = [path for path in self.study.vary if _has(scenario, path)]
+    def _drawn(self, case: Case, levels: Array | None) -> Draw:
+        """Draw the parts, without what the case has no place for, and with the levels to try."""
+        known = self.study.varied_under(*case)
         over = None if self.sought is None else self.sought.over
 
         def drawn(runs: range) -> Columns:
@@ -168,15 +165,15 @@ class AgreementPlan(Plan):
         compare = compared_shares if question.name == RELEASED else compared
         names = {"other": other, "first": first, "quantity": question.name}
         return [
-            {**names, LAW: law, DISTURBANCE: acts_on}
+            {**names, LAW: law, DISTURBANCE: disturbance}
             | compare(
-                question.values[law, acts_on, first],
-                question.values[law, acts_on, other],
+                question.values[law, disturbance, first],
+                question.values[law, disturbance, other],
                 self.asked.confidence,
                 question.relevant,
-                certain=self.study.certain,
+                certain=self.study.certain_under(law, disturbance),
             )
-            for law, acts_on in dict.fromkeys(case[:2] for case in self.cases)
+            for law, disturbance in dict.fromkeys(case[:2] for case in self.cases)
         ]
 
     def _smallest(self, run: Run) -> dict[Case, Array]:
@@ -225,6 +222,11 @@ class AgreementPlan(Plan):
             "agreed: every law says the same; contradicted: laws say different things; only ...: "
             "nothing else shows it; undecided: some laws do not show it"
         ]
+        if len(self.study.disturbances) > 1:
+            notes.append(
+                "a conclusion turns on how friction varies where one law shows different things "
+                "with two disturbances"
+            )
         if self.study.certain:
             notes.append(
                 "nothing is drawn: differences are exact, for this one part and under these laws"
@@ -335,14 +337,6 @@ def narrowed(count: int, cases: int, passes: Passes) -> Places:
         high = np.where(passed & inside, tried, high).min(axis=1, keepdims=True)
         low = np.where(inside & (tried < high), tried, low).max(axis=1, keepdims=True)
     return high
-
-
-def _has(scenario: Scenario, path: str) -> bool:
-    try:
-        check_paths(scenario, {path: None})
-    except StudyError:
-        return False
-    return True
 
 
 def _released(found: PointRuns) -> Mask:

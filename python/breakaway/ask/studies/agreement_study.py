@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from itertools import combinations
 from math import ceil, log2
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from breakaway.ask.studies.agreement_disturbance import (
+    LEFT_OUT,
+    OWN,
+    AskedDisturbance,
+    own_disturbance,
+    with_disturbance,
+)
 from breakaway.ask.studies.base import (
     Changes,
     LevelsTable,
@@ -25,13 +33,10 @@ from breakaway.model.scenario.model import Name, NotNegative
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch.columns import check_paths, with_nominal_controller
 
-ActsOn = Literal["joint_force", "friction_level"]
 USUAL_LAWS: tuple[Law, ...] = ("lugre", "elasto_plastic", "gms", "coulomb_stiction")
 """Laws that are asked where a study names none."""
 RELEASED, SMALLEST = "released", "smallest"
 """What is compared beside metrics: how many are released, and the smallest sufficient level."""
-OWN = "variant's own"
-"""What the disturbance multiplies where variants differ in it."""
 
 
 class AgreementVariant(StudyModel):
@@ -81,9 +86,14 @@ class AgreementTable(StudyModel):
     numbers: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """Numbers of a law's own by its name, such as elastic_share, attraction_n_per_s, elements.
     Left out: those of the scenario's joint, or the usual ones of a population."""
-    disturbances: Annotated[list[ActsOn], Field(min_length=1)] | None = None
-    """What the disturbance multiplies; every law is asked with each. Left out: as the scenario
-    says."""
+    disturbances: Annotated[list[AskedDisturbance], Field(min_length=1)] | None = None
+    """How friction varies; every law is asked with each: by the paper's random factor on the
+    joint_force or the friction_level, along the way (field), from part to part (part: the random
+    factor on the friction level, held for the whole run), or not at all (none). Their size is the
+    scenario's disturbance.var. Left out: as the scenario says."""
+    correlation_length_m: Annotated[float, Field(ge=1e-6, le=1.0)] = 1e-3
+    """Correlation length of friction along the way, in m; not used where the scenario's own
+    disturbance is a field."""
     smallest: SmallestTable | None = None
     """A number whose smallest sufficient level is compared. Metrics are then compared only if the
     study names some."""
@@ -166,38 +176,58 @@ class AgreementStudy(StudyBase):
 
     @cached_property
     def disturbances(self) -> list[str]:
-        """What the disturbance multiplies, one after the other, or that variants differ in it."""
+        """How friction varies, one after the other, or that variants differ in it."""
         asked: list[str] = list(self.agreement.disturbances or [])
-        own = {scenario.disturbance.acts_on for scenario in self._changed.values()}
+        own = {own_disturbance(scenario) for scenario in self._changed.values()}
         return asked or (list(own) if len(own) == 1 else [OWN])
 
     @cached_property
     def scenarios(self) -> dict[tuple[str, str, str], Scenario]:
-        """Law, what the disturbance multiplies, and name of a variant -> its scenario."""
+        """Law, disturbance, and name of a variant -> its scenario."""
+        length_m = self.agreement.correlation_length_m
         return {
-            (law, acts_on, name): _with_disturbance(scenario, acts_on)
+            (law, disturbance, name): with_disturbance(scenario, disturbance, length_m)
             for name, nominal in self._changed.items()
             for law, scenario in self._under_every_law(nominal)
-            for acts_on in self.disturbances
+            for disturbance in self.disturbances
         }
+
+    def varied_under(self, law: str, disturbance: str, variant: str) -> list[str]:
+        """Give the numbers in ``vary`` that a case has a place for."""
+        scenario, left_out = (
+            self.scenarios[law, disturbance, variant],
+            LEFT_OUT.get(disturbance, ()),
+        )
+        return [path for path in self.vary if path not in left_out and _has(scenario, path)]
+
+    def certain_under(self, law: str, disturbance: str) -> bool:
+        """Whether nothing is drawn for any variant under a law with a disturbance."""
+        cases = [(law, disturbance, variant.name) for variant in self.agreement.variants]
+        drawn = (self.varied_under(*case) or _is_drawn(self.scenarios[case]) for case in cases)
+        return not any(drawn)
 
     @property
     def certain(self) -> bool:
         """Whether nothing is drawn, so that one run shows everything."""
-        return not self.vary and not any(map(_is_drawn, self.scenarios.values()))
+        cases = dict.fromkeys(case[:2] for case in self.scenarios)
+        return all(self.certain_under(law, disturbance) for law, disturbance in cases)
 
     @property
     def undisturbed(self) -> bool:
         """Whether no run of any variant is disturbed."""
-        still = all(scenario.disturbance.var == 0.0 for scenario in self.scenarios.values())
-        return still and "disturbance.var" not in self.vary
+        return not any(self._is_disturbed(case) for case in self.scenarios)
 
     @property
     def jolted(self) -> bool:
         """Whether a disturbance multiplies the whole joint force in any variant."""
-        varied = "disturbance.var" in self.vary
-        found = (scenario.disturbance for scenario in self.scenarios.values())
-        return any(d.acts_on == "joint_force" and (varied or d.var > 0.0) for d in found)
+        return any(
+            own_disturbance(scenario) == "joint_force" and self._is_disturbed(case)
+            for case, scenario in self.scenarios.items()
+        )
+
+    def _is_disturbed(self, case: tuple[str, str, str]) -> bool:
+        varied = "disturbance.var" in self.varied_under(*case)
+        return varied or self.scenarios[case].disturbance.var > 0.0
 
     @cached_property
     def _changed(self) -> dict[str, Scenario]:
@@ -232,15 +262,14 @@ class AgreementStudy(StudyBase):
         return self
 
     def _refuse_twins(self) -> None:
-        seen: dict[str, Scenario] = {}
-        for (_, _, name), scenario in self.scenarios.items():
-            twin = next((n for n, other in seen.items() if n != name and other == scenario), None)
-            if twin is not None:
+        cases = dict.fromkeys(case[:2] for case in self.scenarios)
+        names = [variant.name for variant in self.agreement.variants]
+        for one, other in combinations(names, 2):
+            if all(self.scenarios[*c, one] == self.scenarios[*c, other] for c in cases):
                 raise StudyError(
-                    f"agreement.variants: {twin!r} and {name!r} are the same; change one, or "
+                    f"agreement.variants: {one!r} and {other!r} are the same; change one, or "
                     "leave it out"
                 )
-            seen.setdefault(name, scenario)
 
     def _refuse_what_is_not_fixed(self) -> None:
         asked = self.agreement
@@ -250,7 +279,8 @@ class AgreementStudy(StudyBase):
             **dict.fromkeys(sought, "is sought in agreement.smallest; leave one out"),
         }
         if asked.disturbances is not None:
-            fixed["disturbance.acts_on"] = "is also in agreement.disturbances; leave one out"
+            also = "is also in agreement.disturbances; leave one out"
+            fixed |= {"disturbance.acts_on": also, "disturbance.kind": also}
         for variant in asked.variants:
             for path in _paths(variant.changes):
                 if path in fixed:
@@ -268,7 +298,7 @@ class AgreementStudy(StudyBase):
         if self.certain and self.runs > 1:
             raise StudyError(
                 f"runs: {self.runs} runs of each variant would all be the same, because nothing is "
-                "drawn: vary is empty and disturbance.var is 0; give one of them, or runs = 1"
+                f"drawn: {self._why_certain()}; give one of them, or runs = 1"
             )
         if not self.certain and self.runs < needed:
             raise StudyError(
@@ -277,14 +307,24 @@ class AgreementStudy(StudyBase):
                 f"{needed} or more"
             )
 
+    def _why_certain(self) -> str:
+        if self.disturbances == ["none"]:
+            return "agreement.disturbances is none, and vary names nothing else"
+        return "vary is empty and disturbance.var is 0"
+
     def _refuse_levels_that_are_none(self, asked: SmallestTable) -> None:
         if asked.over in self.vary:
             raise StudyError(
                 f"agreement.smallest.over: {asked.over} is also in vary; a number is either "
                 "sought or drawn: leave one out"
             )
-        for (law, _, name), scenario in self.scenarios.items():
+        for (law, disturbance, name), scenario in self.scenarios.items():
             where = f"({name}, {law})"
+            if asked.over in LEFT_OUT.get(disturbance, ()):
+                raise StudyError(
+                    f"agreement.smallest.over: {asked.over} means nothing where "
+                    f"agreement.disturbances has {disturbance!r}; leave one out"
+                )
             try:
                 check_paths(scenario, {asked.over: None})
             except StudyError as error:
@@ -294,8 +334,12 @@ class AgreementStudy(StudyBase):
                 changed(scenario, level, f"agreement.smallest.{end}: {where}")
 
 
-def _with_disturbance(scenario: Scenario, acts_on: str) -> Scenario:
-    return scenario if acts_on == OWN else scenario.with_({"disturbance.acts_on": acts_on})
+def _has(scenario: Scenario, path: str) -> bool:
+    try:
+        check_paths(scenario, {path: None})
+    except StudyError:
+        return False
+    return True
 
 
 def _is_drawn(scenario: Scenario) -> bool:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.ask.studies.agreement_disturbance import REDRAWN
 from breakaway.ask.studies.statistics import clopper_pearson, median_interval
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 Direction = Literal["lower", "higher", "same", "undecided"]
 Under = tuple[str, str]
-"""A friction law, and what the disturbance multiplies."""
+"""A friction law, and how friction varies."""
+REDRAWN_IN_TIME = "redrawn in time"
+"""Names the disturbances that are drawn anew in time, together."""
 
 ROUNDING = 1e-9
 """Relative difference up to which two numbers are the same."""
@@ -141,13 +145,14 @@ def verdict_of(directions: Mapping[Under, Direction]) -> str:
     """Say whether laws agree on which way a difference goes.
 
     ``agreed``: all say the same. ``only ...``: one law alone, or the laws with one disturbance
-    alone, say that there is a difference. ``contradicted``: some say lower and others higher, or
-    some that there is a difference and others that there is none. ``undecided``: anything else.
+    alone, say that there is a difference; ``only redrawn in time``: those alone whose disturbance
+    is drawn anew in time. ``contradicted``: some say lower and others higher, or some that there
+    is a difference and others that there is none. ``undecided``: anything else.
 
     Parameters
     ----------
     directions : mapping
-        Law and what the disturbance multiplies -> which way the difference goes.
+        Law and disturbance -> which way the difference goes.
 
     Examples
     --------
@@ -169,7 +174,8 @@ def verdict_of(directions: Mapping[Under, Direction]) -> str:
         return "contradicted"
     said = [under for under, direction in directions.items() if direction in ("lower", "higher")]
     alone = _alone([law for law, _ in said], [law for law, _ in directions])
-    alone += _alone([acts_on for _, acts_on in said], [acts_on for _, acts_on in directions])
+    disturbances = [how for _, how in said], [how for _, how in directions]
+    alone += _alone(*disturbances) or _redrawn_alone(*disturbances)
     if alone:
         return f"only {' with '.join(alone)}"
     return "contradicted" if said and "same" in found else "undecided"
@@ -178,6 +184,41 @@ def verdict_of(directions: Mapping[Under, Direction]) -> str:
 def _alone(said: Sequence[str], asked: Sequence[str]) -> list[str]:
     """Give what alone said it, where more were asked."""
     return list(set(said)) if len(set(said)) == 1 < len(set(asked)) else []
+
+
+def _redrawn_alone(said: Sequence[str], asked: Sequence[str]) -> list[str]:
+    """Give the words for disturbances that are redrawn in time, where they alone said it."""
+    alone = bool(said) and set(said) <= set(REDRAWN) and not set(asked) <= set(REDRAWN)
+    return [REDRAWN_IN_TIME] if alone else []
+
+
+def turns_on(directions: Mapping[Under, Direction]) -> list[str]:
+    """Say on what a difference turns: on the law, on the disturbance, on both or on neither.
+
+    It turns on one where the other is the same and two directions that are shown differ.
+
+    Parameters
+    ----------
+    directions : mapping
+        Law and disturbance -> which way the difference goes.
+
+    Examples
+    --------
+    >>> cases = [(law, how) for law in ("lugre", "gms") for how in ("field", "none")]
+    >>> turns_on(dict(zip(cases, ["lower", "same", "lower", "same"])))
+    ['disturbance']
+    >>> turns_on(dict(zip(cases, ["lower", "undecided", "same", "undecided"])))
+    ['law']
+
+    """
+    shown = {under: way for under, way in directions.items() if way != "undecided"}
+    pairs = [(a, b) for a, b in combinations(shown, 2) if shown[a] != shown[b]]
+    found = []
+    if any(one[1] == other[1] for one, other in pairs):
+        found.append("law")
+    if any(one[0] == other[0] for one, other in pairs):
+        found.append("disturbance")
+    return found
 
 
 def conclusion_of(rows: Sequence[Row]) -> Row:
@@ -191,10 +232,10 @@ def conclusion_of(rows: Sequence[Row]) -> Row:
     """
     directions: dict[Under, Direction] = {_under(row): row["direction"] for row in rows}
     verdict = verdict_of(directions)
-    disturbances = list(dict.fromkeys(acts_on for _, acts_on in directions))
+    disturbances = list(dict.fromkeys(how for _, how in directions))
     parts = {
-        f"verdict_{acts_on}": verdict_of({u: d for u, d in directions.items() if u[1] == acts_on})
-        for acts_on in disturbances
+        f"verdict_{how}": verdict_of({u: d for u, d in directions.items() if u[1] == how})
+        for how in disturbances
     }
     ways = [way for way in directions.values() if way in ("lower", "higher")]
     return {
@@ -205,6 +246,7 @@ def conclusion_of(rows: Sequence[Row]) -> Row:
             _named(row, disturbances) for row in rows if row["direction"] in ("lower", "higher")
         ),
         **(parts if len(disturbances) > 1 else {}),
+        "turns_on": ", ".join(turns_on(directions)),
         "shown_by_all": _shown_by_all(rows) if verdict == "agreed" else None,
     }
 
@@ -253,6 +295,8 @@ def in_words(conclusion: Row, rows: Sequence[Row]) -> str:
     flag = ""
     if verdict.startswith("only"):
         flag = ", and nothing else that was asked shows it: it may be a property of this model only"
+    if several and "disturbance" in conclusion["turns_on"]:
+        flag += "; it turns on how friction varies"
     by = f" ({'; '.join(parts)})" if parts else ""
     return f"{verdict}{by}: {claim}{flag} [{', '.join(said)}]"
 
