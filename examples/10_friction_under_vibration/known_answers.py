@@ -1,7 +1,9 @@
 """What a contact of Coulomb friction, rigid or elastic, does under vibration: known answers.
 
 Friction is as a share of mu N_0. An elastic contact is Prandtl's element, a spring that carries at
-most mu N; its yield deflection is mu N_0 / k.
+most mu N; its yield deflection is mu N_0 / k. These models, and the numbers that decide, are those
+of M. Popov, The influence of vibration on friction: a contact-mechanical perspective, Frontiers in
+Mechanical Engineering 6:69, 2020.
 """
 
 from math import acos, asin, cos, hypot, pi, sin, sqrt
@@ -28,7 +30,7 @@ def tangential_elastic(speed: float, softness: float) -> float:
     With X(p) = s p + sin p the way of the part over the amplitude, s = v / v_a, the contact unloads
     from p_1 = pi - acos(s), where the part turns. If it goes back by less than 2 K, the contact is
     elastic until X is what it was, else it slips back and loads again after the part has turned
-    anew. Derived here; at low speed it is ``1 - 1 / K``, which Popov (2020) has.
+    anew. Derived here; at low speed it is ``1 - 1 / K``.
 
     Parameters
     ----------
@@ -66,7 +68,7 @@ def tangential_elastic(speed: float, softness: float) -> float:
 def normal_static(amplitude: float) -> float:
     """Friction at low speed under vibration normal to the joint: what the lowest N holds.
 
-    ``1 - a``, and none where the bodies part: Popov (2020).
+    ``1 - a``, and none where the bodies part; the model is Popov's (2020).
 
     Parameters
     ----------
@@ -78,7 +80,7 @@ def normal_static(amplitude: float) -> float:
 
 
 def normal(amplitude: float, speed: float) -> float:
-    """Mean friction under vibration normal to the joint, elastic contact: Popov (2020).
+    """Mean friction under vibration normal to the joint, elastic contact.
 
     With N = 1 - a cos p the contact slips while it can follow its level, sticks from p_1, where the
     level rises faster than the spring, ``sin p_1 = s``, and slips again where the spring has caught
@@ -134,7 +136,7 @@ def transverse(speed: float) -> float:
 def transverse_static(softness: float) -> float:
     """Friction at low speed under vibration across the motion, elastic contact.
 
-    ``sqrt(1 - 1 / K**2)``, and none where the vibration alone makes it slip: Popov (2020).
+    ``sqrt(1 - 1 / K**2)``, and none where the vibration alone makes it slip.
 
     Parameters
     ----------

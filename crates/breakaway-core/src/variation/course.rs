@@ -31,9 +31,9 @@ pub enum Over {
 /// ```
 /// use breakaway_core::variation::{Course, Over};
 /// let (mut at, mut values) = ([0.0; 8], [0.0; 8]);
-/// (at[1], values[0], values[1]) = (0.1, 2000.0, 500.0);
+/// (at[1], values[0], values[1]) = (0.125, 2000.0, 500.0);
 /// let course = Course { over: Over::Travel, points: 2, at, values };
-/// assert_eq!(course.at(0.05, 7.0), 1250.0);
+/// assert_eq!(course.at(0.0625, 7.0), 1250.0);
 /// assert_eq!(course.at(0.2, 0.0), 500.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
