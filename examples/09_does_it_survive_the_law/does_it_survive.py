@@ -7,14 +7,15 @@ from breakaway.ask.studies import AgreementStudy, load_study, run_study
 from breakaway.ask.studies.files import parse_study
 
 HERE = Path(__file__).parent
-SHARES = {"vibration": (0.5, 0.7, 0.99), "disturbance": (0.7,)}
+SHARES = {"vibration": (0.5, 0.7, 0.99), "disturbance": (0.7,), "waiting": (0.7,)}
 """Study -> elastic shares of the elasto-plastic bristle; what vibration is worth depends on it."""
 
 
 def asked(name: str, duration_s: float, until: str, elastic_share: float) -> AgreementStudy:
     """Give a study of this folder, changed as the command line says."""
     values = load_study(HERE / f"{name}.toml").model_dump(exclude_none=True)
-    values["changes"]["timing"]["duration_s"] = duration_s
+    if name != "waiting":  # which compares durations
+        values["changes"]["timing"]["duration_s"] = duration_s
     values["agreement"]["numbers"] = {"elasto_plastic": {"elastic_share": elastic_share}}
     if name == "disturbance":
         values["agreement"]["smallest"]["until"] = until
@@ -29,12 +30,13 @@ def ask(name: str, duration_s: float, until: str, elastic_share: float) -> None:
     print(f"smallest force, N ({name}, {duration_s:g} s, elastic share {elastic_share:g})")
     for row in done.summary["tables"]["smallest"]:
         spread = f" ({row['p05']:g} to {row['p95']:g})" if row["runs"] > 1 else ""
-        print(f"  {row['law']:17} {row['variant']:18} {row['median']:g}{spread}")
+        with_ = f"{row['disturbance']:15} " if name == "waiting" else ""
+        print(f"  {row['law']:17} {with_}{row['variant']:18} {row['median']:g}{spread}")
     print("\n".join(done.summary["result"]), end="\n\n")
 
 
 def main() -> None:
-    """Run both studies, or one, as the command line says."""
+    """Run all studies, or one, as the command line says."""
     parser = ArgumentParser(description=__doc__)
     parser.add_argument("--only", choices=SHARES, help="run one study alone")
     parser.add_argument("--duration-s", type=float, default=4.0, help="how long is pushed")
