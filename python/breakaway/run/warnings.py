@@ -11,6 +11,14 @@ from breakaway.model.scenario.scenario import Scenario
 if TYPE_CHECKING:
     from breakaway.run.finished import Outcome, RunMetrics
 
+REDRAWN_IN_TIME = (
+    "disturbance: a factor that is redrawn by the clock breaks up what counts as one jump (one "
+    "part, var 0.3, every 1 ms: 0.667 mm became 0.067 mm) and lets waiting find the lowest of many "
+    "draws (friction of 450 N let go at 315.3 N within 4 s); friction varies along the way: "
+    "disturbance.kind = 'field'"
+)
+"""What to know of the paper's random factor; examples/10_redrawn_in_time prints its figures."""
+
 
 def warnings_of(scenario: Scenario, outcome: Outcome, metrics: RunMetrics) -> Iterator[str]:
     """Say what is doubtful about a run of a resolved scenario, one sentence each."""
@@ -18,6 +26,7 @@ def warnings_of(scenario: Scenario, outcome: Outcome, metrics: RunMetrics) -> It
         yield from _diverged(scenario, metrics)
     yield from _stuck_but_loose(scenario)
     yield from _negative_gains(scenario)
+    yield from _redrawn_in_time(scenario)
     let_go_early = metrics.time_to_breakaway_s > 0 and metrics.peak_over_breakaway < 1
     if scenario.joint.law == "lugre" and let_go_early:
         yield (
@@ -56,3 +65,15 @@ def _negative_gains(scenario: Scenario) -> Iterator[str]:
                 f"controller.{which}: a gain is negative: kp = {gains.kp_n_per_m:.4g} N/m, kd = "
                 f"{gains.kd_n_s_per_m:.4g} N s/m; see `breakaway design`"
             )
+
+
+def _redrawn_in_time(scenario: Scenario) -> Iterator[str]:
+    """Warn of the paper's random factor, but for the paper's own scenarios, which are named for it.
+
+    A factor that is held for the whole run is one of the part.
+    """
+    disturbance = scenario.disturbance
+    if disturbance.kind == "field" or scenario.name.startswith("paper_"):
+        return
+    if disturbance.var > 0.0 and disturbance.hold_s < scenario.timing.duration_s:
+        yield REDRAWN_IN_TIME
