@@ -18,6 +18,14 @@ if TYPE_CHECKING:
 
 Trace = Mapping[str, NDArray[np.float64]]
 
+REDRAWN_IN_TIME = (
+    "disturbance: a factor that is redrawn by the clock breaks up what counts as one jump (one "
+    "part, var 0.3, every 1 ms: 0.667 mm became 0.067 mm) and lets waiting find the lowest of many "
+    "draws (friction of 450 N let go at 315.3 N within 4 s); friction varies along the way: "
+    "disturbance.kind = 'field'"
+)
+"""What to know of the paper's random factor; examples/11_redrawn_in_time prints its figures."""
+
 
 def warnings_of(
     scenario: Scenario, outcome: Outcome, metrics: RunMetrics, trace: Trace
@@ -28,6 +36,7 @@ def warnings_of(
     yield from _stuck_but_loose(scenario)
     yield from _negative_gains(scenario)
     yield from _bristles_push(scenario, trace)
+    yield from _redrawn_in_time(scenario)
     let_go_early = metrics.time_to_breakaway_s > 0 and metrics.peak_over_breakaway < 1
     if scenario.joint.law == "lugre" and let_go_early:
         yield (
@@ -94,3 +103,15 @@ def _fastest_within(scenario: Scenario, trace: Trace) -> float:
     held = trace["position_m"] < scenario.joint.engagement_length_m
     speed = np.abs(trace["velocity_m_per_s"])
     return float(np.max(speed, initial=0.0, where=held & np.isfinite(speed)))
+
+
+def _redrawn_in_time(scenario: Scenario) -> Iterator[str]:
+    """Warn of the paper's random factor, but for the paper's own scenarios, which are named for it.
+
+    A factor that is held for the whole run is one of the part.
+    """
+    disturbance = scenario.disturbance
+    if disturbance.kind == "field" or scenario.name.startswith("paper_"):
+        return
+    if disturbance.var > 0.0 and disturbance.hold_s < scenario.timing.duration_s:
+        yield REDRAWN_IN_TIME

@@ -23,6 +23,7 @@ from breakaway.ask.studies.study import (
 )
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.run.batch.columns import with_nominal_controller
+from breakaway.run.warnings import REDRAWN_IN_TIME
 
 Mask = NDArray[np.bool_]
 
@@ -124,6 +125,9 @@ class RobustnessPlan(Plan):
                 "so the confidence holds for each level by itself, and not for the choice among "
                 "them"
             )
+        redrawn = self.study.base.disturbance.kind == "paper_random_factor"
+        if redrawn and self.asked.over == "disturbance.var":
+            notes.append(REDRAWN_IN_TIME)
         if self.study.design != "random":
             notes.append(
                 f"the parts are a {self.study.design} design, not independent draws, which the "
