@@ -99,6 +99,18 @@ impl<R: Real> Law<R> for CoulombStiction<R> {
         R::zero()
     }
 
+    /// Nothing: there are no bristles.
+    #[inline(always)]
+    fn let_go(
+        &self,
+        state: JointState<R>,
+        _elements: &mut ElementState<R>,
+        _x: R,
+        _level_factor: R,
+    ) -> JointState<R> {
+        state
+    }
+
     /// What holds the part, stuck or sliding.
     #[inline(always)]
     fn frozen<F: Frozen<R>>(&self, state: &JointState<R>, at: &At<R>, then: F) -> F::Output {

@@ -3,6 +3,7 @@
 use super::elements::Elements;
 use crate::maybe::Maybe;
 use crate::real::Real;
+use crate::variation::hypotenuse;
 
 /// Where a law is frozen.
 #[derive(Clone, Copy, Debug)]
@@ -125,4 +126,18 @@ pub struct JointState<R> {
     pub transverse_bristle_m: R,
     /// 1 while a two-region or rigid law slides, else 0. Laws without such an event leave it alone.
     pub sliding: R,
+}
+
+impl<R: Real> JointState<R> {
+    /// The same with bristles of k_e that carry at most a force in N: k_e |z| ≤ `most_n`, z with what lies
+    /// across the motion.
+    #[inline(always)]
+    pub(super) fn carrying(self, most_n: R, stiffness_n_per_m: R) -> Self {
+        R::section("a level that fell: |z| <= F_s(x) / k_e");
+        let (along, across) = (self.bristle_m, self.transverse_bristle_m);
+        let (larger, smaller) = (along.abs().max(across.abs()), along.abs().min(across.abs()));
+        let carried_n = (stiffness_n_per_m * hypotenuse(larger, smaller)).named("carried_n");
+        let kept = R::select(most_n.lt(carried_n), most_n / carried_n, R::one()).named("kept");
+        Self { bristle_m: along * kept, transverse_bristle_m: across * kept, ..self }
+    }
 }

@@ -35,18 +35,18 @@ pub trait Law<R: Real> {
     }
 
     /// What bristles let go at the start of a step when their level falls with the time: none carries
-    /// more than breaks it loose, φ F_s(x), whether the part moves or not. By their own equations
-    /// bristles relax only as the part moves. While they let go, the motion is of first order in the
-    /// step. A law without a memory leaves the state alone.
+    /// more than breaks it loose, |z| ≤ φ F_s(x) / k_e, whether the part moves or not. By their own
+    /// equations bristles relax only as the part moves. While they let go, the motion is of first order
+    /// in the step. This is for one bristle, alike in both directions.
     #[inline(always)]
     fn let_go(
         &self,
         state: JointState<R>,
         _elements: &mut ElementState<R>,
-        _x: R,
-        _level_factor: R,
+        x: R,
+        level_factor: R,
     ) -> JointState<R> {
-        state
+        state.carrying(self.breakaway_force(x) * level_factor, self.stiffness_n_per_m())
     }
 
     /// Freezes velocity and position, and hands what the law then is to `then`.

@@ -9,7 +9,7 @@ use super::law::Law;
 use crate::maybe::Maybe;
 use crate::name::Name;
 use crate::real::Real;
-use crate::variation::{hypotenuse, speed};
+use crate::variation::speed;
 
 /// Modified LuGre friction, equations (1) to (8).
 ///
@@ -172,7 +172,6 @@ impl<R: Real> Law<R> for Lugre<R> {
         stribeck_level(levels, end, length, self.stribeck_velocity_m_per_s, x, v, factor)
     }
 
-    /// |z| ≤ φ F_s(x) / k_e, z with what lies across the motion.
     #[inline(always)]
     fn let_go(
         &self,
@@ -181,18 +180,9 @@ impl<R: Real> Law<R> for Lugre<R> {
         x: R,
         level_factor: R,
     ) -> JointState<R> {
-        R::section("a level that fell: |z| <= F_s(x) / k_e");
-        let (along, across) = (state.bristle_m, state.transverse_bristle_m);
         let [forward_n, backward_n] = self.loose_n(x, level_factor);
-        let most_n = R::select(along.lt(R::zero()), backward_n, forward_n);
-        let (larger, smaller) = (along.abs().max(across.abs()), along.abs().min(across.abs()));
-        let carried_n = (self.stiffness_n_per_m * hypotenuse(larger, smaller)).named("carried_n");
-        let kept = R::select(most_n.lt(carried_n), most_n / carried_n, R::one()).named("kept");
-        JointState {
-            bristle_m: along * kept,
-            transverse_bristle_m: across * kept,
-            sliding: state.sliding,
-        }
+        let most_n = R::select(state.bristle_m.lt(R::zero()), backward_n, forward_n);
+        state.carrying(most_n, self.stiffness_n_per_m)
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! The two-region law that the paper designs its controller with.
 
+use super::elements::ElementState;
 use super::engagement::engaged_level;
 use super::frozen::{At, Bristle, Frozen, JointState};
 use super::law::Law;
@@ -110,6 +111,18 @@ impl<R: Real> Law<R> for TwoRegion<R> {
             ),
             sliding: R::flag(sliding),
         }
+    }
+
+    /// Nothing more: it settles on its level at each step.
+    #[inline(always)]
+    fn let_go(
+        &self,
+        state: JointState<R>,
+        _elements: &mut ElementState<R>,
+        _x: R,
+        _level_factor: R,
+    ) -> JointState<R> {
+        state
     }
 
     #[inline(always)]
