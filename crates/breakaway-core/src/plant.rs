@@ -193,7 +193,7 @@ struct Midpoint<R: Real> {
     transverse_m_per_s: Maybe<R>,
 }
 
-impl<R: Real, L: Law<R>> Plant<'_, R, L> {
+impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
     /// Steps by `h` seconds from time `t` in s.
     ///
     /// Runge-Kutta steps a rigid push on a law of one bristle; callers see to that. With anything
@@ -206,7 +206,9 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
         let level_factor = self.level_factor(&mut state.cell, x_mid, t + k);
         let mut settled = self.joint.settle(state.joint(), x, v, level_factor);
         if self.variation.levels_read_time() {
-            settled = self.joint.let_go(settled, &mut state.elements, x_mid, level_factor);
+            let (joint, elements) = (*self.joint, state.elements);
+            let letting = LettingGo { joint, settled, elements, x: x_mid, level_factor };
+            (settled, state.elements) = R::apart(letting);
             state.transverse_bristle_m = settled.transverse_bristle_m;
         }
         (state.bristle_m, state.sliding) = (settled.bristle_m, settled.sliding);
@@ -222,7 +224,15 @@ impl<R: Real, L: Law<R>> Plant<'_, R, L> {
                 };
                 self.linearly_implicit_midpoint(state, &at)
             }
-            Integrator::Rk4 => self.rk4(state, t, h),
+            Integrator::Rk4 => {
+                let (joint, variation) = (*self.joint, *self.variation);
+                let Self { mass_kg, push, factors, .. } = *self;
+                let stepped =
+                    Explicit { joint, variation, mass_kg, push, factors, state: *state, t, h };
+                let (next, moved) = R::apart(stepped);
+                *state = next;
+                moved
+            }
         }
     }
 
@@ -498,6 +508,49 @@ fn ahead<R: Real>(start: &[R; 3], slope: &[R; 3], step: R) -> [R; 3] {
     core::array::from_fn(|i| start[i] + step * slope[i])
 }
 
+/// A step of Runge-Kutta. By value, as every block: what a block refers to stays in memory.
+struct Explicit<R, L> {
+    joint: L,
+    variation: Variation<R>,
+    mass_kg: R,
+    push: Push<R>,
+    factors: Factors<R>,
+    state: PlantState<R>,
+    t: R,
+    h: R,
+}
+
+impl<R: Real, L: Law<R> + Copy> Block for Explicit<R, L> {
+    type Output = (PlantState<R>, Moved<R>);
+
+    #[inline(always)]
+    fn compute(self) -> (PlantState<R>, Moved<R>) {
+        let Self { joint, variation, mass_kg, push, factors, mut state, t, h } = self;
+        let plant = Plant { joint: &joint, mass_kg, push, factors, variation: &variation };
+        let moved = plant.rk4(&mut state, t, h);
+        (state, moved)
+    }
+}
+
+/// What bristles let go where their level fell.
+struct LettingGo<R, L> {
+    joint: L,
+    settled: JointState<R>,
+    elements: ElementState<R>,
+    x: R,
+    level_factor: R,
+}
+
+impl<R: Real, L: Law<R>> Block for LettingGo<R, L> {
+    type Output = (JointState<R>, ElementState<R>);
+
+    #[inline(always)]
+    fn compute(self) -> (JointState<R>, ElementState<R>) {
+        let Self { joint, settled, mut elements, x, level_factor } = self;
+        (joint.let_go(settled, &mut elements, x, level_factor), elements)
+    }
+}
+
 /// What the friction levels are multiplied by at a place and a time that the part only passes.
 struct Anywhere<R> {
     variation: Variation<R>,
@@ -521,7 +574,7 @@ struct Step<'a, 'b, R: Real, L> {
     middle: Midpoint<R>,
 }
 
-impl<R: Real, L: Law<R>> Frozen<R> for Step<'_, '_, R, L> {
+impl<R: Real, L: Law<R> + Copy> Frozen<R> for Step<'_, '_, R, L> {
     type Output = Moved<R>;
     #[inline(always)]
     fn bristle(self, bristle: &Bristle<R>) -> Moved<R> {

@@ -114,7 +114,8 @@ def plot_shares(rows: Sequence[Row]) -> Figure:
             axes.set_title(LAW_WORDS.get(law, law), fontsize=9)
         for axes, variation in zip(panels[:, 0], variations, strict=True):
             axes.set_yticks(place, [text.label(name) for name in methods], fontsize=9)
-            axes.set_ylabel(f"friction\n{VARIATION_WORDS[variation]}", fontsize=8)
+            verb, rest = VARIATION_WORDS[variation].split(" ", 1)
+            axes.set_ylabel(f"friction {verb}\n{rest}", fontsize=8)
         figure.supxlabel("share of the parts (%)", fontsize=9)
         handles, labels = panels[0, 0].get_legend_handles_labels()
         shown = dict(zip(labels, handles, strict=True))
