@@ -55,7 +55,7 @@ fn work((travel, force): &(f64, f64)) -> f64 {
 }
 
 /// Pushes a part of 1 kg at rest with a force of time; gives its state after each step.
-fn pushed<L: Law<f64>>(
+fn pushed<L: Law<f64> + Copy>(
     law: &L,
     force: impl Fn(f64) -> f64,
     h: f64,
