@@ -12,7 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway._core import OUTCOMES
-from breakaway.ask.studies.agreement_study import RELEASED, SMALLEST, AgreementStudy
+from breakaway.ask.studies.agreement_study import (
+    RELEASED,
+    SMALLEST,
+    AgreementStudy,
+    certain_under,
+    varied_under,
+)
 from breakaway.ask.studies.base import percent
 from breakaway.ask.studies.levels import Level
 from breakaway.ask.studies.plan import (
@@ -108,7 +114,7 @@ class AgreementPlan(Plan):
 
     def _drawn(self, case: Case, levels: Array | None) -> Draw:
         """Draw the parts, without what the case has no place for, and with the levels to try."""
-        known = self.study.varied_under(*case)
+        known = varied_under(self.study, *case)
         over = None if self.sought is None else self.sought.over
 
         def drawn(runs: range) -> Columns:
@@ -171,7 +177,7 @@ class AgreementPlan(Plan):
                 question.values[law, disturbance, other],
                 self.asked.confidence,
                 question.relevant,
-                certain=self.study.certain_under(law, disturbance),
+                certain=certain_under(self.study, law, disturbance),
             )
             for law, disturbance in dict.fromkeys(case[:2] for case in self.cases)
         ]

@@ -192,25 +192,11 @@ class AgreementStudy(StudyBase):
             for disturbance in self.disturbances
         }
 
-    def varied_under(self, law: str, disturbance: str, variant: str) -> list[str]:
-        """Give the numbers in ``vary`` that a case has a place for."""
-        scenario, left_out = (
-            self.scenarios[law, disturbance, variant],
-            LEFT_OUT.get(disturbance, ()),
-        )
-        return [path for path in self.vary if path not in left_out and _has(scenario, path)]
-
-    def certain_under(self, law: str, disturbance: str) -> bool:
-        """Whether nothing is drawn for any variant under a law with a disturbance."""
-        cases = [(law, disturbance, variant.name) for variant in self.agreement.variants]
-        drawn = (self.varied_under(*case) or _is_drawn(self.scenarios[case]) for case in cases)
-        return not any(drawn)
-
     @property
     def certain(self) -> bool:
         """Whether nothing is drawn, so that one run shows everything."""
         cases = dict.fromkeys(case[:2] for case in self.scenarios)
-        return all(self.certain_under(law, disturbance) for law, disturbance in cases)
+        return all(certain_under(self, law, disturbance) for law, disturbance in cases)
 
     @property
     def undisturbed(self) -> bool:
@@ -226,7 +212,7 @@ class AgreementStudy(StudyBase):
         )
 
     def _is_disturbed(self, case: tuple[str, str, str]) -> bool:
-        varied = "disturbance.var" in self.varied_under(*case)
+        varied = "disturbance.var" in varied_under(self, *case)
         return varied or self.scenarios[case].disturbance.var > 0.0
 
     @cached_property
@@ -340,6 +326,20 @@ def _has(scenario: Scenario, path: str) -> bool:
     except StudyError:
         return False
     return True
+
+
+def varied_under(study: AgreementStudy, law: str, disturbance: str, variant: str) -> list[str]:
+    """Give the numbers in ``vary`` that a case has a place for."""
+    scenario = study.scenarios[law, disturbance, variant]
+    left_out = LEFT_OUT.get(disturbance, ())
+    return [path for path in study.vary if path not in left_out and _has(scenario, path)]
+
+
+def certain_under(study: AgreementStudy, law: str, disturbance: str) -> bool:
+    """Whether nothing is drawn for any variant under a law with a disturbance."""
+    cases = [(law, disturbance, variant.name) for variant in study.agreement.variants]
+    drawn = (varied_under(study, *case) or _is_drawn(study.scenarios[case]) for case in cases)
+    return not any(drawn)
 
 
 def _is_drawn(scenario: Scenario) -> bool:
