@@ -3,6 +3,13 @@
 use crate::real::{Function, Real};
 use crate::{exp2, fused};
 
+/// A function of its own: in place it would be many times as long as what surrounds it.
+#[cold]
+#[inline(never)]
+fn fresh<R: Real, F: Function<K, N>, const K: usize, const N: usize>(from: [R; K]) -> [R; N] {
+    F::of(from)
+}
+
 macro_rules! impl_real {
     ($float:ty, $round:expr, $exp2:expr, $fma:path) => {
         impl Real for $float {
@@ -31,7 +38,7 @@ macro_rules! impl_real {
                 kept: [Self; N],
                 from: [Self; K],
             ) -> [Self; N] {
-                if needed { F::of(from) } else { kept }
+                if needed { fresh::<Self, F, K, N>(from) } else { kept }
             }
             #[inline(always)]
             fn known(holds: bool) -> bool {

@@ -48,16 +48,16 @@ impl<R: Real> ElastoPlastic<R> {
     #[inline(always)]
     fn bristle(&self, state: &JointState<R>, at: &At<R>) -> Bristle<R> {
         let (z, v, k) = (state.bristle_m, at.velocity_m_per_s, at.ahead_s);
+        let friction = self.friction.bristle(at);
+        let g = friction.friction_level_n;
         let Some(&across) = at.transverse_m_per_s.get() else {
-            let bristle = self.yielding(self.friction.bristle(at), z, v);
-            let g = bristle.friction_level_n;
+            let bristle = self.yielding(friction, z, v);
             let z_ahead =
                 (g * k.mul_add(v, z) / k.mul_add(bristle.relaxation(), g)).named("ahead_m");
             return self.yielding(bristle, z_ahead, v);
         };
         let (z, v) = ([z, state.transverse_bristle_m], [v, across]);
-        let bristle = self.yielding_in_plane(self.friction.bristle(at), z, v);
-        let g = bristle.friction_level_n;
+        let bristle = self.yielding_in_plane(friction, z, v);
         let kept = g / k.mul_add(bristle.relaxation(), g);
         let ahead = [k.mul_add(v[0], z[0]) * kept, k.mul_add(v[1], z[1]) * kept];
         self.yielding_in_plane(bristle, ahead, v)
