@@ -30,7 +30,7 @@ def asked(full: bool) -> bk.Tuning:
 def main() -> None:
     """Tune, or go on with it, and print what was found."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--full", action="store_true", help="the whole tuning, which takes minutes")
+    parser.add_argument("--full", action="store_true", help="the whole tuning, which takes hours")
     full = parser.parse_args().full
     tuning = asked(full)
     done = bk.tune(tuning, out=Path("out") / tuning.name, resume=True)

@@ -133,6 +133,9 @@ def test_a_file_is_named_from_the_folder_of_what_is_about_it(
         ("09_does_it_survive_the_law/disturbance.toml", "study"),
         ("08_gentle_tuning/quick.toml", "tuning"),
         ("08_gentle_tuning/timed_impacts.toml", "tuning"),
+        ("08_gentle_tuning/timed_impacts_anew.toml", "tuning"),
+        ("08_gentle_tuning/soft_axis.toml", "tuning"),
+        ("09_does_it_survive_the_law/waiting.toml", "study"),
         ("08_gentle_tuning/quick_parts.toml", "population"),
     ],
 )
