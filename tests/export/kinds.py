@@ -214,6 +214,7 @@ def varying() -> dict[str, bk.Scenario]:
         changed = joint.model_copy(update={"drift": drift, "normal_force": normal})
         found[f"{name}_varying"] = BASE.with_(steps, joint=changed, disturbance=field)
         found[f"{name}_{law}_field"] = BASE.with_(steps, joint=joint, disturbance=field)
+    found["sensed_field"] = BASE.with_(sensors=SENSORS, disturbance=field)
     return found
 
 

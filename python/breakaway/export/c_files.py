@@ -114,7 +114,11 @@ def c_texts(recording: Recording) -> dict[str, str]:
 
 
 def draws(recording: Recording) -> bool:
-    """Whether the code draws random numbers."""
+    """Whether the code draws random numbers: for the paper's random factor, or for noise."""
+    return _redrawn(recording) or _noisy(recording)
+
+
+def _redrawn(recording: Recording) -> bool:
     return "draw" in recording.signals
 
 
@@ -180,6 +184,7 @@ def _draws(recording: Recording) -> dict[str, Any]:
     disturbance = recording.scenario.disturbance
     return {
         "draws": draws(recording),
+        "redrawn": _redrawn(recording),
         "law": disturbance.law,
         "band_limited": disturbance.law == "band_limited",
         "noisy": _noisy(recording),
@@ -226,7 +231,7 @@ def _summary(recording: Recording) -> list[str]:
     plant = [
         f"actuator: {scenario.actuator.kind}",
         f"joint: {scenario.joint.law}",
-        f"disturbance: {scenario.disturbance.law}",
+        f"disturbance: {scenario.disturbance.kind}, {scenario.disturbance.law}",
         f"integrator: {scenario.timing.integrator}, "
         f"{scenario.timing.steps_per_period} step(s) in a period",
     ]
@@ -244,7 +249,7 @@ def _step(recording: Recording) -> str:
     """The statements of a step."""
     prefix = recording.what
     lines = []
-    if draws(recording):
+    if _redrawn(recording):
         lines.append(f"w->draw = {prefix}_draw(&self->parameters, &self->state.draws);")
     if _noisy(recording):
         sample = "self->state.draws.sample" + (" + 1u" if prefix == "plant" else "")

@@ -66,8 +66,10 @@ def friction_field(
     check_arguments(friction_field, locals(), ScenarioError)
     check_whole("run_index", run_index, ScenarioError, 0, 2**64 - 1)
     x = column_of("position_m", position_m, ScenarioError)
-    if not np.isfinite(x).all():
-        raise ScenarioError("position_m: holds a number that is not finite; give positions in m")
+    if not x.size or not np.isfinite(x).all():
+        raise ScenarioError(
+            "position_m: is empty or holds a number that is not finite; give positions in m"
+        )
     if scenario.disturbance.kind != "field":
         raise ScenarioError(
             f"disturbance.kind: {scenario.disturbance.kind!r} is no field; give 'field'"
