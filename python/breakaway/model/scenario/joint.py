@@ -30,12 +30,22 @@ class _Bristle(Model):
 
     one_bristle: ClassVar[bool] = True
     """Whether the joint yields by one bristle, which is all that Runge-Kutta steps."""
-    in_plane: ClassVar[bool] = False
-    """Whether the law says what vibration across the motion does."""
     stiffness_n_per_m: Positive
     """k_e, stiffness of the bristles, in N/m."""
     damping_n_s_per_m: NotNegative
     """c, damping of the bristles, in N s/m."""
+
+
+class _Varying(Model):
+    """How friction varies with the time, the way and the normal force: the same for all laws."""
+
+    in_plane: ClassVar[bool] = False
+    """Whether the law says what vibration across the motion does."""
+    drift: Drift | None = None
+    """A factor on all friction levels that changes during a pull. Left out: 1."""
+    normal_force: NormalForce | None = None
+    """The force across the joint, which all friction levels are proportional to. Left out: it is
+    constant, and the levels are what they are."""
 
 
 class _Guide(Model):
@@ -47,14 +57,11 @@ class _Guide(Model):
     """Friction left at the end of the guide, in N. Left out: the weight m g, as in the paper."""
     backward_ratio: Positive | None = None
     """Factor on all friction levels for backward motion. Left out: 1."""
-    drift: Drift | None = None
-    """A factor on all friction levels that changes during a pull. Left out: 1."""
-    normal_force: NormalForce | None = None
-    """The force across the joint, which all friction levels are proportional to. Left out: it is
-    constant, and the levels are what they are."""
 
 
-class SeizedJoint(_Guide, _Bristle, _Levels):  # fields come in the reverse order of the bases
+class SeizedJoint(
+    _Varying, _Guide, _Bristle, _Levels
+):  # fields come in the reverse order of the bases
     """What every friction law with a bristle has: levels, bristle and length of engagement."""
 
 
@@ -198,7 +205,7 @@ class TwoRegion(SeizedJoint):
         return self
 
 
-class CoulombStiction(_Guide, _Levels):
+class CoulombStiction(_Varying, _Guide, _Levels):
     """Rigid friction: stuck up to F_s(x), else g(v, x) against the motion, without any bristle.
 
     Nothing gives before breakaway, nothing drifts, and breakaway does not depend on how fast the
@@ -215,7 +222,6 @@ class CoulombStiction(_Guide, _Levels):
     """
 
     one_bristle: ClassVar[bool] = False
-    in_plane: ClassVar[bool] = False
     law: Literal["coulomb_stiction"] = "coulomb_stiction"
     """The friction law."""
     viscous_n_s_per_m: NotNegative = 0.0
