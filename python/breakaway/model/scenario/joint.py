@@ -59,9 +59,8 @@ class _Guide(Model):
     """Factor on all friction levels for backward motion. Left out: 1."""
 
 
-class SeizedJoint(
-    _Varying, _Guide, _Bristle, _Levels
-):  # fields come in the reverse order of the bases
+# Fields come in the reverse order of the bases.
+class SeizedJoint(_Varying, _Guide, _Bristle, _Levels):
     """What every friction law with a bristle has: levels, bristle and length of engagement."""
 
 
