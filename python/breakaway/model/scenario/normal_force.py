@@ -155,14 +155,6 @@ class _NormalForce(Model):
     transverse: TransverseVibration | None = None
     """Vibration in the joint's plane, across the motion. Left out: none."""
 
-    def core_source(self) -> dict[str, Any]:
-        """Give constant, gain and course under the names of the core."""
-        raise NotImplementedError
-
-    def start_n(self) -> float:
-        """Give the force at the start, without vibration, in N."""
-        raise NotImplementedError
-
 
 class ConstantNormalForce(_NormalForce):
     """A normal force that stays: a preload.
