@@ -113,6 +113,8 @@ def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
     if kind == "value_error":
         reason = context["error"]
         return str(reason) if not names else f"{field}.{reason}"
+    if names and names[-1].isdigit():  # a number of a list: the list's field is described
+        names, owner = _descend(path[:-1], model)
     remedy = _wanted(owner, names[-1] if names else "")
     bound = next((key for key in _SIGNS if key in context), None)
     if bound is not None:
@@ -139,6 +141,7 @@ _TYPE_NAMES = {
     "model_attributes_type": "a table of keys",
     "dict_type": "a table of keys",
     "tuple_type": "a list of numbers",
+    "too_long": "a list of at most {max_length} numbers",
 }
 
 

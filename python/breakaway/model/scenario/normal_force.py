@@ -16,14 +16,10 @@ POINTS_MAX = 8
 STEPS_PER_CYCLE = 20
 """Fewest integration steps in a cycle of vibration."""
 
-Points = Annotated[tuple[float, ...], Field(strict=False, min_length=1, max_length=POINTS_MAX)]
+Points = Annotated[tuple[float, ...], Field(strict=False, max_length=POINTS_MAX)]
 """Numbers of a course; TOML has lists, which a strict tuple would refuse."""
-PositivePoints = Annotated[
-    tuple[Positive, ...], Field(strict=False, min_length=1, max_length=POINTS_MAX)
-]
-NotNegativePoints = Annotated[
-    tuple[NotNegative, ...], Field(strict=False, min_length=1, max_length=POINTS_MAX)
-]
+PositivePoints = Annotated[tuple[Positive, ...], Field(strict=False, max_length=POINTS_MAX)]
+NotNegativePoints = Annotated[tuple[NotNegative, ...], Field(strict=False, max_length=POINTS_MAX)]
 
 
 class NormalVibration(Model):
@@ -58,6 +54,8 @@ def _check_course(
     name: str, at: Sequence[float], values_name: str, values: Sequence[float]
 ) -> None:
     """Refuse places that do not rise, or of which there are not as many as values."""
+    if not at:
+        raise ValueError(f"{name}: [] has no number; give one for each point")
     if len(at) != len(values):
         raise ValueError(
             f"{values_name}: {list(values)!r} has not as many numbers as {name} = {list(at)!r}; "
