@@ -195,7 +195,9 @@ impl<'a, V: Wide, const N: usize> Pack<'a, V, N> {
                 };
                 let time_s = (V::constant(n as f64) - begun) * any.timing.control_period_s;
                 let setpoint = any.reference.sample(time_s);
-                let sample = any.follow::<true>(state, &setpoint, &factors, &noise);
+                let error_m = setpoint.position_m - state.plant.position_m;
+                let mut seeing = metrics.seeing(groups, limits, error_m);
+                let sample = any.follow::<_, true>(state, &setpoint, &factors, &noise, &mut seeing);
                 metrics.update(groups, limits, &sample);
                 n += 1;
             }

@@ -265,8 +265,8 @@ impl Progress {
             if AXIS && n == next_row {
                 rows.keep_axis(&extraction, &state); // before the step moves it
             }
-            let sample = extraction.step(&mut state, job.draws(&extraction, disturbance, n));
-            metrics.update(Groups::ALL, &limits, &sample);
+            let draws = job.draws(&extraction, disturbance, n);
+            let sample = metrics.step(Groups::ALL, &limits, &extraction, &mut state, draws);
             let bounded = metrics.bounded == 1.0;
             if n == next_row && bounded {
                 record(&mut rows.trace, row_of(&sample));

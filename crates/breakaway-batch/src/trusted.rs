@@ -107,8 +107,15 @@ impl<V: Wide, const N: usize> Moving<V, N> {
             while n < end {
                 let setpoint = setpoints.at(n);
                 let none = Noise::none();
-                let sample = extraction.follow::<false>(&mut state, &setpoint, &factors, &none);
-                metrics.update_unseen(groups, &limits, &sample);
+                let mut seeing = metrics.seeing_unseen(groups, &limits);
+                let sample = extraction.follow::<_, false>(
+                    &mut state,
+                    &setpoint,
+                    &factors,
+                    &none,
+                    &mut seeing,
+                );
+                metrics.update_unseen(groups, &sample);
                 n += 1;
             }
         }

@@ -2,11 +2,12 @@
 
 use crate::actuator::{Actuator, ActuatorState, Command, Effort};
 use crate::control::{Control, Controller, ControllerState, Measurement, Watch, WatchState};
+use crate::crossing::Motion;
 use crate::disturbance::{Disturbance, Draws, Factors};
 use crate::joint::Joint;
 use crate::name::{Name, within};
 use crate::parameters::parameters;
-use crate::period::Period;
+use crate::period::{Nobody, Period, Stretch, Witness};
 use crate::plant::{Integrator, Plant, PlantState};
 use crate::real::{Block, Real};
 use crate::reference::{Reference, Setpoint};
@@ -234,7 +235,7 @@ impl<R: Real> Extraction<R> {
     pub fn step(&self, state: &mut ExtractionState<R>, draws: Draws<R>) -> Sample<R> {
         let setpoint = self.next_setpoint(&mut state.sampling);
         let factors = self.factors(draws);
-        self.follow::<false>(state, &setpoint, &factors, &draws.noise)
+        self.follow::<_, false>(state, &setpoint, &factors, &draws.noise, &mut Nobody)
     }
 
     /// The paper's random factor for a held draw. Friction that varies along the way has none.
@@ -257,31 +258,38 @@ impl<R: Real> Extraction<R> {
     /// One control period towards a setpoint that the caller has sampled from the reference, once
     /// for many runs that share it, and with factors that the caller has computed when they were
     /// drawn. The clock of the state stands still. With `APART`, what depends on kinds is computed in
-    /// functions of their own ([`Real::apart`]).
+    /// functions of their own ([`Real::apart`]). The witness sees every integration step.
     #[inline(always)]
-    pub fn follow<const APART: bool>(
+    pub fn follow<W: Witness<R>, const APART: bool>(
         &self,
         state: &mut ExtractionState<R>,
         setpoint: &Setpoint<R>,
         factors: &Factors<R>,
         noise: &Noise<R>,
+        witness: &mut W,
     ) -> Sample<R> {
         let (before, time_s) = (state.plant, setpoint.time_s);
         let measured = self.measure(state, setpoint, noise);
         let decided = apart::<R, _, APART>(Deciding { loop_: self, state, measured: &measured });
         let command = self.delay(&mut state.sampling, decided);
-        let period =
-            apart::<R, _, APART>(Moving { loop_: self, state, command: &command, factors, time_s });
+        let commanded_m_per_s =
+            self.controller.commanded_speed(&state.controller, setpoint, &command);
+        let moving = Moving {
+            loop_: self,
+            state,
+            command: &command,
+            factors,
+            time_s,
+            commanded_m_per_s,
+            witness,
+        };
+        let period = apart::<R, _, APART>(moving);
         state.sampling.force_n = period.force_n;
         Sample {
             time_s,
             period_s: self.timing.control_period_s,
             reference_m: setpoint.position_m,
-            commanded_m_per_s: self.controller.commanded_speed(
-                &state.controller,
-                setpoint,
-                &command,
-            ),
+            commanded_m_per_s,
             position_m: before.position_m,
             velocity_m_per_s: before.velocity_m_per_s,
             bristle_m: before.bristle_m,
@@ -366,11 +374,20 @@ impl<R: Real> Extraction<R> {
         command: &Command<R>,
         factors: &Factors<R>,
         time_s: R,
+        commanded_m_per_s: R,
+        witness: &mut impl Witness<R>,
     ) -> Period<R> {
         let steps = self.timing.steps_per_period;
         let (h, mut sum, mut time_s) = (self.step_s(), Period::none(), time_s);
         for _ in 0..steps {
-            let step = self.move_once(state, command, factors, time_s);
+            let (step, motion) = self.move_once(state, command, factors, time_s);
+            witness.see(&Stretch {
+                time_s,
+                motion,
+                next_position_m: state.plant.position_m,
+                commanded_m_per_s,
+                force_n: step.force_n,
+            });
             time_s = time_s + h;
             if steps == 1 {
                 return step;
@@ -393,7 +410,8 @@ impl<R: Real> Extraction<R> {
         if self.timing.steps_per_period == 1 { period_s } else { period_s * self.step_share() }
     }
 
-    /// One integration step from time `time_s` on: the actuator drives, the plant solves, the actuator yields.
+    /// One integration step from time `time_s` on: the actuator drives, the plant solves, the actuator
+    /// yields. Gives the part's motion as well, as if the joint held to the end of the step.
     #[inline(always)]
     pub fn move_once(
         &self,
@@ -401,9 +419,9 @@ impl<R: Real> Extraction<R> {
         command: &Command<R>,
         factors: &Factors<R>,
         time_s: R,
-    ) -> Period<R> {
+    ) -> (Period<R>, Motion<R>) {
         let h = self.step_s();
-        let part_m = state.plant.position_m;
+        let (part_m, part_m_per_s) = (state.plant.position_m, state.plant.velocity_m_per_s);
         let driven = self.actuator.drive(&mut state.actuator, command, part_m, h);
         let plant = Plant {
             joint: &self.joint,
@@ -414,15 +432,21 @@ impl<R: Real> Extraction<R> {
         };
         let moved = plant.step(self.timing.integrator, &mut state.plant, time_s, h);
         let (push, v) = (moved.push_force_n, moved.mean_velocity_m_per_s);
-        let travel = v * h;
-        Period {
+        let period = Period {
             force_n: push,
             largest_force_n: push.abs(),
             joint_force_n: moved.joint_force_n,
-            work_j: push * travel,
-            joint_work_j: moved.joint_force_n * travel,
+            work_j: push * (v * h),
+            joint_work_j: moved.joint_work_j,
             effort: self.actuator.settle(&mut state.actuator, &driven, push, v, h),
-        }
+        };
+        let motion = Motion {
+            position_m: part_m,
+            velocity_m_per_s: part_m_per_s,
+            change_m_per_s: moved.change_m_per_s,
+            duration_s: h,
+        };
+        (period, motion)
     }
 }
 
@@ -443,20 +467,23 @@ impl<R: Real> Block for Deciding<'_, R> {
 }
 
 /// The part of a period in which things move.
-struct Moving<'a, R> {
+struct Moving<'a, R, W> {
     loop_: &'a Extraction<R>,
     state: &'a mut ExtractionState<R>,
     command: &'a Command<R>,
     factors: &'a Factors<R>,
     time_s: R,
+    commanded_m_per_s: R,
+    witness: &'a mut W,
 }
 
-impl<R: Real> Block for Moving<'_, R> {
+impl<R: Real, W: Witness<R>> Block for Moving<'_, R, W> {
     type Output = Period<R>;
 
     #[inline(always)]
     fn compute(self) -> Period<R> {
-        self.loop_.move_plant(self.state, self.command, self.factors, self.time_s)
+        let Self { loop_, state, command, factors, time_s, commanded_m_per_s, witness } = self;
+        loop_.move_plant(state, command, factors, time_s, commanded_m_per_s, witness)
     }
 }
 

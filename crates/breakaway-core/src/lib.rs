@@ -38,6 +38,7 @@ mod states;
 
 pub mod actuator;
 pub mod control;
+pub mod crossing;
 pub mod disturbance;
 pub mod dual;
 pub mod extraction;

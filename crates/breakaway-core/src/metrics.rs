@@ -1,8 +1,10 @@
-//! What a run reports, reduced sample by sample.
+//! What a run reports, reduced sample by sample; what happens at an instant, step by step.
 
 use crate::actuator::Effort;
-use crate::extraction::Sample;
+use crate::disturbance::Draws;
+use crate::extraction::{Extraction, ExtractionState, Sample};
 use crate::parameters::parameters;
+use crate::period::{Stretch, Witness};
 use crate::real::Real;
 
 parameters! {
@@ -232,7 +234,28 @@ impl<R: Real> Metrics<R> {
         }
     }
 
-    /// Counts a sample for the groups that are wanted, unless the run has left its bounds.
+    /// One control period of a run, counted.
+    #[inline(always)]
+    pub fn step(
+        &mut self,
+        wanted: Groups,
+        limits: &Limits<R>,
+        extraction: &Extraction<R>,
+        state: &mut ExtractionState<R>,
+        draws: Draws<R>,
+    ) -> Sample<R> {
+        let setpoint = extraction.next_setpoint(&mut state.sampling);
+        let factors = extraction.factors(draws);
+        let error_m = setpoint.position_m - state.plant.position_m;
+        let mut seeing = self.seeing(wanted, limits, error_m);
+        let sample =
+            extraction.follow::<_, false>(state, &setpoint, &factors, &draws.noise, &mut seeing);
+        self.update(wanted, limits, &sample);
+        sample
+    }
+
+    /// Counts a sample for the groups that are wanted, unless the run has left its bounds. What
+    /// happens within its period counts [`Metrics::seeing`].
     ///
     /// The sample that leaves them still counts for the largest error and force, so that these tell
     /// why the run diverged; for nothing else. Out of bounds everything that is summed becomes zero,
@@ -247,7 +270,7 @@ impl<R: Real> Metrics<R> {
         let within = error.le(limits.diverged_error_m) & force.le(limits.diverged_force_n);
         let bounded = was_bounded & within;
         self.bounded = R::flag(bounded | !going);
-        self.count(wanted, limits, sample, was_bounded, bounded);
+        self.count(wanted, sample, was_bounded, bounded);
         let since_s = sample.time_s + sample.period_s - self.time_to_release_s;
         // What left its bounds is not over: a run in lanes goes on beside the others, and stays so.
         self.over = R::flag(!going | (bounded & limits.after_release_s.le(since_s)));
@@ -263,10 +286,10 @@ impl<R: Real> Metrics<R> {
     /// Faster; [`Metrics::stayed_within`] tells afterwards whether that was right. Extremes are
     /// counted for it, wanted or not.
     #[inline(always)]
-    pub fn update_unseen(&mut self, wanted: Groups, limits: &Limits<R>, sample: &Sample<R>) {
+    pub fn update_unseen(&mut self, wanted: Groups, sample: &Sample<R>) {
         let yes = R::known(true);
         let wanted = Groups { extremes: true, ..wanted };
-        self.count(wanted, limits, sample, yes, yes);
+        self.count(wanted, sample, yes, yes);
     }
 
     /// Whether no error and no force so far was out of bounds. Numbers that are none are passed
@@ -280,7 +303,6 @@ impl<R: Real> Metrics<R> {
     fn count(
         &mut self,
         wanted: Groups,
-        limits: &Limits<R>,
         sample: &Sample<R>,
         was_bounded: R::Mask,
         bounded: R::Mask,
@@ -302,11 +324,8 @@ impl<R: Real> Metrics<R> {
             let force = sample.largest_force_n;
             self.peak_force_n = larger_where(was_bounded, force, self.peak_force_n);
         }
-        if wanted.force | wanted.impacts | wanted.jump {
-            self.count_motion(wanted, limits, sample, period_s, bounded);
-        }
-        if wanted.events {
-            self.note_times(limits, sample, bounded);
+        if wanted.force {
+            self.count_force(sample, period_s, bounded);
         }
         if wanted.effort {
             self.count_effort(&sample.effort, bounded);
@@ -320,34 +339,14 @@ impl<R: Real> Metrics<R> {
     }
 
     #[inline(always)]
-    fn count_motion(
-        &mut self,
-        wanted: Groups,
-        limits: &Limits<R>,
-        sample: &Sample<R>,
-        period_s: R,
-        bounded: R::Mask,
-    ) {
+    fn count_force(&mut self, sample: &Sample<R>, period_s: R, bounded: R::Mask) {
         let moved = bounded & sample.next_position_m.abs().lt(R::constant(f64::INFINITY));
-        let travel = where_it_holds(moved, sample.next_position_m - sample.position_m);
         let force = where_it_holds(bounded, sample.applied_force_n);
-        if wanted.force {
-            let impulse = force * period_s;
-            self.impulse_n_s = self.impulse_n_s + impulse;
-            self.force_square_n2_s = force.mul_add(impulse, self.force_square_n2_s);
-            self.work_j = self.work_j + where_it_holds(moved, sample.work_j);
-            self.joint_work_j = self.joint_work_j + where_it_holds(moved, sample.joint_work_j);
-            let saturated_s = where_it_holds(bounded, sample.effort.saturated_s);
-            self.saturation_time_s = self.saturation_time_s + saturated_s;
-        }
-        if wanted.impacts {
-            self.count_impacts(limits, period_s, force, travel);
-        }
-        if wanted.jump {
-            let in_guide = sample.position_m.lt(limits.release_position_m);
-            let slipped = where_it_holds(in_guide, travel);
-            self.count_jump(period_s, slipped, sample.commanded_m_per_s);
-        }
+        self.impulse_n_s = force.mul_add(period_s, self.impulse_n_s);
+        self.work_j = self.work_j + where_it_holds(moved, sample.work_j);
+        self.joint_work_j = self.joint_work_j + where_it_holds(moved, sample.joint_work_j);
+        let saturated_s = where_it_holds(bounded, sample.effort.saturated_s);
+        self.saturation_time_s = self.saturation_time_s + saturated_s;
     }
 
     #[inline(always)]
@@ -368,13 +367,37 @@ impl<R: Real> Metrics<R> {
         self.stack_tension_n = R::select(bounded, tension, self.stack_tension_n);
     }
 
+    /// Who counts what is seen of a period's integration steps: impacts, jumps, events. It begins with
+    /// the part's error `error_m` at the sample.
     #[inline(always)]
-    fn count_impacts(&mut self, limits: &Limits<R>, period_s: R, force: R, travel: R) {
+    pub fn seeing<'a>(
+        &'a mut self,
+        wanted: Groups,
+        limits: &'a Limits<R>,
+        error_m: R,
+    ) -> Seeing<'a, R> {
+        let going = self.bounded.is_set() & !self.over.is_set();
+        let bounded = going & error_m.abs().le(limits.diverged_error_m);
+        Seeing { metrics: self, wanted, limits, bounded }
+    }
+
+    /// As [`Metrics::seeing`], of a run within its bounds, without looking.
+    #[inline(always)]
+    pub fn seeing_unseen<'a>(
+        &'a mut self,
+        wanted: Groups,
+        limits: &'a Limits<R>,
+    ) -> SeeingAll<'a, R> {
+        SeeingAll(Seeing { metrics: self, wanted, limits, bounded: R::known(true) })
+    }
+
+    #[inline(always)]
+    fn count_impacts(&mut self, limits: &Limits<R>, duration_s: R, force: R, travel: R) {
         let zero = R::zero();
         let contact = limits.contact_force_n.lt(force);
         let starts = contact & !self.in_contact.is_set();
         self.in_contact = R::flag(contact);
-        self.contact_time_s = self.contact_time_s + R::select(contact, period_s, zero);
+        self.contact_time_s = self.contact_time_s + R::select(contact, duration_s, zero);
         self.impacts = self.impacts + R::flag(starts);
         self.step_m = R::select(starts, zero, self.step_m) + travel;
         self.largest_step_m = self.largest_step_m.max(self.step_m);
@@ -385,28 +408,83 @@ impl<R: Real> Metrics<R> {
     /// A jump is travel faster than the reference while still in the guide, which is what harms a
     /// part: it ends when the part is no faster than the reference, or free.
     #[inline(always)]
-    fn count_jump(&mut self, period_s: R, travel: R, commanded: R) {
+    fn count_jump(&mut self, duration_s: R, travel: R, commanded: R) {
         let commanded = commanded.max(R::zero());
-        let excess = (-commanded).mul_add(period_s, travel);
+        let excess = (-commanded).mul_add(duration_s, travel);
         self.jump_m = R::select(R::zero().lt(excess), self.jump_m + excess, R::zero());
         self.largest_jump_m = self.largest_jump_m.max(self.jump_m);
     }
 
+    /// Both places are passed within the step, and found there.
     #[inline(always)]
-    fn note_times(&mut self, limits: &Limits<R>, sample: &Sample<R>, bounded: R::Mask) {
+    fn note_times(&mut self, limits: &Limits<R>, step: &Stretch<R>, bounded: R::Mask) {
         let not_yet = R::constant(f64::INFINITY);
-        let next_s = R::select(bounded, sample.time_s + sample.period_s, not_yet);
-        let loose = limits.breakaway_travel_m.lt(sample.next_position_m);
-        self.time_to_breakaway_s = self.time_to_breakaway_s.min(R::select(loose, next_s, not_yet));
+        let (motion, h) = (&step.motion, step.motion.duration_s);
+        let loose = bounded & limits.breakaway_travel_m.lt(step.next_position_m);
+        let breaks = loose & not_yet.le(self.time_to_breakaway_s);
+        let at_s = h.mul_add(motion.share_at(limits.breakaway_travel_m, breaks), step.time_s);
+        self.time_to_breakaway_s = R::select(breaks, at_s, self.time_to_breakaway_s);
         // A part that is pulled back into its guide is not free: only the last release counts.
-        let free = limits.release_position_m.le(sample.next_position_m);
-        let since_s = R::select(free, self.time_to_release_s.min(next_s), not_yet);
-        self.release_velocity_m_per_s = R::select(
-            next_s.lt(self.time_to_release_s) & free,
-            sample.next_velocity_m_per_s,
-            self.release_velocity_m_per_s,
-        );
+        let free = limits.release_position_m.le(step.next_position_m);
+        let releases = bounded & free & not_yet.le(self.time_to_release_s);
+        let share = motion.share_at(limits.release_position_m, releases);
+        let release_s = R::select(releases, h.mul_add(share, step.time_s), self.time_to_release_s);
+        let since_s = R::select(free, release_s, not_yet);
+        self.release_velocity_m_per_s =
+            R::select(releases, motion.velocity_after(share), self.release_velocity_m_per_s);
         self.time_to_release_s = R::select(bounded, since_s, self.time_to_release_s);
+    }
+}
+
+/// Counts what is seen of a period's integration steps.
+pub struct Seeing<'a, R: Real> {
+    metrics: &'a mut Metrics<R>,
+    wanted: Groups,
+    limits: &'a Limits<R>,
+    bounded: R::Mask,
+}
+
+impl<R: Real> Seeing<'_, R> {
+    #[inline(always)]
+    fn count(&mut self, step: &Stretch<R>) {
+        let Self { metrics, wanted, limits, bounded } = self;
+        let (before_m, h) = (step.motion.position_m, step.motion.duration_s);
+        let moved = *bounded & step.next_position_m.abs().lt(R::constant(f64::INFINITY));
+        let travel = where_it_holds(moved, step.next_position_m - before_m);
+        let force = where_it_holds(*bounded, step.force_n);
+        if wanted.force {
+            metrics.force_square_n2_s = (force * h).mul_add(force, metrics.force_square_n2_s);
+        }
+        if wanted.impacts {
+            metrics.count_impacts(limits, where_it_holds(*bounded, h), force, travel);
+        }
+        if wanted.jump {
+            let end_m = limits.release_position_m;
+            let in_guide = where_it_holds(moved, end_m.min(step.next_position_m) - before_m);
+            let slipped = R::select(before_m.lt(end_m), in_guide, R::zero());
+            metrics.count_jump(h, slipped, step.commanded_m_per_s);
+        }
+        if wanted.events {
+            metrics.note_times(limits, step, *bounded);
+        }
+    }
+}
+
+impl<R: Real> Witness<R> for Seeing<'_, R> {
+    #[inline(always)]
+    fn see(&mut self, step: &Stretch<R>) {
+        self.bounded = self.bounded & step.force_n.abs().le(self.limits.diverged_force_n);
+        self.count(step);
+    }
+}
+
+/// Counts likewise, of a run that is within its bounds.
+pub struct SeeingAll<'a, R: Real>(Seeing<'a, R>);
+
+impl<R: Real> Witness<R> for SeeingAll<'_, R> {
+    #[inline(always)]
+    fn see(&mut self, step: &Stretch<R>) {
+        self.0.count(step);
     }
 }
 

@@ -1,6 +1,7 @@
 //! What goes through the part in a control period.
 
 use crate::actuator::Effort;
+use crate::crossing::Motion;
 use crate::name::{Name, within};
 use crate::real::Real;
 
@@ -66,4 +67,34 @@ impl<R: Real> Period<R> {
             effort: within!("effort", self.effort, f),
         }
     }
+}
+
+/// An integration step, as whoever counts sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch<R> {
+    /// Time at its start, s.
+    pub time_s: R,
+    /// How the part moves; as if the joint held to the end, where it lets go within.
+    pub motion: Motion<R>,
+    /// x at its end, m.
+    pub next_position_m: R,
+    /// Speed that was asked of the part, m/s.
+    pub commanded_m_per_s: R,
+    /// F in N.
+    pub force_n: R,
+}
+
+/// Who sees every integration step.
+pub trait Witness<R> {
+    /// Sees one. Has to be inlined.
+    fn see(&mut self, step: &Stretch<R>);
+}
+
+/// Nobody does.
+#[derive(Clone, Copy, Debug)]
+pub struct Nobody;
+
+impl<R> Witness<R> for Nobody {
+    #[inline(always)]
+    fn see(&mut self, _: &Stretch<R>) {}
 }

@@ -1,5 +1,6 @@
 //! Newton's law for the part, and the two ways to integrate it with its joint.
 
+use crate::crossing::Motion;
 use crate::disturbance::Factors;
 use crate::joint::{At, Bristle, ElementState, Elements, Frozen, JointState, Law, Rigid};
 use crate::maybe::Maybe;
@@ -160,6 +161,10 @@ parameters! {
         pub push_force_n,
         /// Travel over time, m/s.
         pub mean_velocity_m_per_s,
+        /// What the velocity gained, m/s; as if the joint had held to the end, where it let go within.
+        pub change_m_per_s,
+        /// ∫ R dx in J.
+        pub joint_work_j,
     }
 }
 
@@ -187,7 +192,7 @@ struct Midpoint<R: Real> {
     k_over_m: R,
     /// q = k n/m in s/kg, n the factor on the joint force.
     q: R,
-    /// Whether the joint still holds at the middle of the step.
+    /// Whether the joint holds at the start of the step.
     engaged: R::Mask,
     /// Velocity across the motion, if there is any, m/s.
     transverse_m_per_s: Maybe<R>,
@@ -272,7 +277,7 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
         .named("predicted_m_per_s");
         let at = At { velocity_m_per_s: v_predicted, ..*begun };
         let joint = state.joint();
-        let engaged = self.engaged(begun.position_m);
+        let engaged = self.engaged(state.position_m);
         let transverse_m_per_s = begun.transverse_m_per_s;
         let middle = Midpoint { k, k_over_m, q, engaged, transverse_m_per_s };
         self.joint.frozen(&joint, &at, Step { plant: self, state, middle })
@@ -292,7 +297,7 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
     /// Multiplying through by g leaves one division; collecting powers of g leaves the shortest
     /// chain after the exponential in g, which is what a single run waits for, and coefficients
     /// that change at a redraw only. R_m = (w − v_m) / q is the joint force of the first line. A
-    /// part whose middle is beyond the guide moves by w alone; its R_m and its bristle are zero.
+    /// part that begins beyond the guide moves by w alone; its R_m and its bristle are zero.
     /// Derivation and error constants: `docs/derivations/linearly_implicit_midpoint.md`.
     #[inline(always)]
     fn step_bristle(
@@ -351,7 +356,7 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
             let z = z + z - state.transverse_bristle_m;
             state.transverse_bristle_m = R::select(engaged, z, R::zero());
         }
-        self.carry(state, k, two_v, lost * per_lost, force_n)
+        self.carry(state, at, two_v, lost * per_lost, force_n)
     }
 
     /// Several elements:
@@ -383,7 +388,7 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
         state.bristle_m = elements.finish(&ahead, &mut moving, v_mid, engaged);
         state.elements = moving;
         let joint_force = R::select(engaged, joint_force, R::zero());
-        self.carry(state, k, v_mid + v_mid, joint_force, force_n)
+        self.carry(state, at, v_mid + v_mid, joint_force, force_n)
     }
 
     /// No bristle: the force that stops the part within the step, limited to the level.
@@ -400,7 +405,7 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
         rigid: &Rigid<R>,
     ) -> Moved<R> {
         let v = state.velocity_m_per_s;
-        let &Midpoint { k, k_over_m, q, engaged, .. } = at;
+        let &Midpoint { k_over_m, q, engaged, .. } = at;
         let (zero, half) = (R::zero(), R::constant(0.5));
         R::section(
             "rigid joint: the force that stops the part within the step, limited to the level",
@@ -422,27 +427,52 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
         let two_v = R::select(slips, sliding + sliding, v).named("two_v_m_per_s");
         state.sliding = R::flag(slips);
         let joint_force = (half * sigma).mul_add(two_v, friction);
-        self.carry(state, k, two_v, joint_force, force_n)
+        self.carry(state, at, two_v, joint_force, force_n)
     }
 
-    /// Ends a step whose middle velocity was `two_v` / 2.
+    /// Ends a step whose middle velocity was `two_v` / 2. Where it leads out of the guide, the joint
+    /// force R acts up to there and no further: for the rest of the step, h_r, the part is faster.
+    ///
+    /// ```text
+    /// v ← v + h_r n R / m,   x ← x + h_r² n R / 2 m
+    /// ```
     #[inline(always)]
     fn carry(
         &self,
         state: &mut PlantState<R>,
-        k: R,
+        at: &Midpoint<R>,
         two_v: R,
         joint_force_n: R,
         push_force_n: R,
     ) -> Moved<R> {
         R::section("motion: v = 2 v_m - v, x = x + h v_m");
+        let (x, v, k) = (state.position_m, state.velocity_m_per_s, at.k);
+        let half = R::constant(0.5);
         state.joint_force_n = joint_force_n.named("joint_force_n");
-        state.position_m = k.mul_add(two_v, state.position_m).named("position_m");
-        state.velocity_m_per_s = (two_v - state.velocity_m_per_s).named("velocity_m_per_s");
+        state.position_m = k.mul_add(two_v, x).named("position_m");
+        state.velocity_m_per_s = (two_v - v).named("velocity_m_per_s");
+        let (held_n, end_m) =
+            (self.factors.joint_force * joint_force_n, self.joint.engagement_length_m());
+        let change = state.velocity_m_per_s - v;
+        let leaves = at.engaged & end_m.le(state.position_m);
+        let motion = Motion {
+            position_m: x,
+            velocity_m_per_s: v,
+            change_m_per_s: change,
+            duration_s: k + k,
+        };
+        let rest = R::one() - motion.share_at(end_m, leaves);
+        let gained = ((rest + rest) * (at.q * joint_force_n)).named("gained_m_per_s");
+        let further_m = k * rest * gained;
+        let held_m = R::select(leaves, end_m - x, k * two_v);
+        state.position_m = state.position_m + further_m;
+        state.velocity_m_per_s = state.velocity_m_per_s + gained;
         Moved {
-            joint_force_n: self.factors.joint_force * joint_force_n,
+            joint_force_n: held_n * (R::one() - rest),
             push_force_n,
-            mean_velocity_m_per_s: R::constant(0.5) * two_v,
+            mean_velocity_m_per_s: half.mul_add(two_v, half * rest * gained),
+            change_m_per_s: change,
+            joint_work_j: held_n * held_m,
         }
     }
 
@@ -498,6 +528,8 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
             joint_force_n: joint_force,
             push_force_n: self.push.force_n,
             mean_velocity_m_per_s: (x - start[0]) / h,
+            change_m_per_s: v - start[1],
+            joint_work_j: joint_force * (x - start[0]),
         }
     }
 }

@@ -567,7 +567,7 @@ fn hammered(law: &str, joint: Joint<f64>, axis: FeedAxis<f64>) -> [u32; 3] {
         let share = if on { 1.0 } else { 0.0 };
         let command = Command { force_n: 0.0, feed_m_per_s: 0.01, stack_share: share };
         let (moved, effort) = bench.step(&command, UNDISTURBED, h);
-        balance.add(&effort, moved.joint_force_n * moved.mean_velocity_m_per_s * h);
+        balance.add(&effort, moved.joint_work_j);
         charge += effort.charge_c;
         let f = moved.push_force_n;
         counts[if f < 0.0 { 0 } else { usize::from(f > 0.0) + 1 }] += 1;

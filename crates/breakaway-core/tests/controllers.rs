@@ -383,7 +383,7 @@ fn timed_impacts_break_a_rigid_joint_loose_within_a_step_of_their_exponential() 
         Controller::TimedImpacts(TimedImpacts { travel_m: 5e-3, target_s: 0.5, ..IMPACTS });
     let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
     for _ in 0..200_000 {
-        metrics.update(Groups::ALL, &limits, &travel.step(&mut state, Draws::none()));
+        metrics.step(Groups::ALL, &limits, &travel, &mut state, Draws::none());
     }
     assert!(metrics.time_to_release_s < 1.0, "{}", metrics.time_to_release_s);
     assert!(metrics.peak_force_n < 2.0 * 450.0, "{}", metrics.peak_force_n);
@@ -533,7 +533,7 @@ fn a_force_ramp_and_then_timed_impacts_free_a_rigid_joint() {
         let extraction = calm(rigid(), PUSH_ONLY, controller);
         let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
         for _ in 0..200_000 {
-            metrics.update(Groups::ALL, &limits, &extraction.step(&mut state, Draws::none()));
+            metrics.step(Groups::ALL, &limits, &extraction, &mut state, Draws::none());
         }
         metrics
     };
@@ -559,7 +559,7 @@ fn frequency_modulation_has_its_pulses_and_their_height() {
         let mut limits = paper_limits();
         limits.diverged_error_m = 1.0;
         for _ in 0..100_000 {
-            metrics.update(Groups::ALL, &limits, &extraction.step(&mut state, Draws::none()));
+            metrics.step(Groups::ALL, &limits, &extraction, &mut state, Draws::none());
         }
         // The first pulse begins at once, with the phase at zero.
         assert!((metrics.impacts - hertz).abs() <= 1.0, "{} of {hertz}", metrics.impacts);

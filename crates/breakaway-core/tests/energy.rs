@@ -14,8 +14,8 @@ fn work_is_joint_work_and_kinetic_energy() {
         let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
         for n in 0..50_000 {
             let disturbance = f64::from(n / 10 * 7 % 11) / 5.5 - 1.0;
-            let sample = extraction.step(&mut state, Draws { disturbance, ..Draws::none() });
-            metrics.update(Groups::ALL, &paper_limits(), &sample);
+            let draws = Draws { disturbance, ..Draws::none() };
+            metrics.step(Groups::ALL, &paper_limits(), &extraction, &mut state, draws);
             let v = state.plant.velocity_m_per_s;
             let kinetic = 0.5 * extraction.part.mass_kg * v * v;
             let missing = metrics.work_j - metrics.joint_work_j - kinetic;

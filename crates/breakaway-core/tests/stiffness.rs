@@ -24,8 +24,7 @@ fn run(mut extraction: Extraction<f64>, integrator: Integrator, steps: u32) -> M
     extraction.timing.steps_per_period = steps;
     let (mut state, mut metrics) = (ExtractionState::at_rest(), Metrics::new());
     for _ in 0..(motion.duration_s * 1e5).round() as u32 {
-        let sample = extraction.step(&mut state, Draws::none());
-        metrics.update(Groups::ALL, &paper_limits(), &sample);
+        metrics.step(Groups::ALL, &paper_limits(), &extraction, &mut state, Draws::none());
         if metrics.bounded == 0.0 {
             break;
         }

@@ -77,12 +77,8 @@ fn the_loop_runs_the_same_in_other_units() {
             for n in 0..20_000 {
                 let disturbance = f64::from(n / 10 * 7 % 11) / 5.5 - 1.0;
                 let draws = Draws { disturbance, ..Draws::none() };
-                metrics.update(Groups::ALL, &limits, &ours.step(&mut state, draws));
-                their_metrics.update(
-                    Groups::ALL,
-                    &their_limits,
-                    &theirs.step(&mut their_state, draws),
-                );
+                metrics.step(Groups::ALL, &limits, &ours, &mut state, draws);
+                their_metrics.step(Groups::ALL, &their_limits, &theirs, &mut their_state, draws);
             }
             assert!(metrics.time_to_breakaway_s.is_finite() && state.plant.position_m > 0.02);
             let converted = state.map(&mut |name, value| value * units.factor(name.field()));

@@ -83,7 +83,7 @@ impl Model<'_> {
             let commanded = inputs(recorder, What::Plant);
             let draw = recorder.input("signal/draw");
             let (command, factors, time_s) = model::begin(extraction, state, commanded, draw);
-            let period = extraction.move_once(state, &command, &factors, time_s);
+            let (period, _) = extraction.move_once(state, &command, &factors, time_s);
             let forces = model::end(state, &period);
             outputs(recorder, &FORCES, &forces);
         })
@@ -109,7 +109,7 @@ impl Model<'_> {
             };
             let sum = Period::<f64>::none().map(&mut of(recorder, "sum"));
             let time_s = recorder.input("signal/time_s");
-            let step = extraction.move_once(state, &command, &factors, time_s);
+            let (step, _) = extraction.move_once(state, &command, &factors, time_s);
             if extraction.variation.reads_time() {
                 recorder.output("signal/time_s", time_s + extraction.step_s());
             }
@@ -138,7 +138,7 @@ impl Model<'_> {
     fn loop_at_once(&self) -> Routine {
         self.routine("compute", 1, |recorder, extraction, state| {
             let (command, factors, time_s) = begin_loop(recorder, extraction, state);
-            let period = extraction.move_once(state, &command, &factors, time_s);
+            let (period, _) = extraction.move_once(state, &command, &factors, time_s);
             end_loop(recorder, state, &period);
         })
     }

@@ -2,6 +2,7 @@
 
 use breakaway_batch::HeldDraws;
 use breakaway_batch::draws::{field_keys, noise};
+use breakaway_core::period::Nobody;
 use breakaway_core::sensor::Noise;
 use breakaway_core::{Draws, Extraction, ExtractionState};
 
@@ -103,7 +104,9 @@ impl<R: Scalar> Rig<R> {
         let draw = self.draw(sample);
         let state = &mut self.state;
         let (command, factors, time_s) = model::begin(&self.extraction, state, commanded, draw);
-        let period = self.extraction.move_plant(state, &command, &factors, time_s);
+        let zero = R::zero();
+        let period =
+            self.extraction.move_plant(state, &command, &factors, time_s, zero, &mut Nobody);
         let forces = model::end(state, &period);
         [&self.show(sample + 1)[..], &forces].concat()
     }

@@ -545,8 +545,8 @@ impl<R: Real> Run<R> {
 
     /// The step that all five numbers take.
     pub(crate) fn step(&mut self, draws: Draws<R>) {
-        let sample = self.extraction.step(&mut self.state, draws);
-        self.metrics.update(Groups::ALL, &self.limits, &sample);
+        let Self { extraction, limits, state, metrics } = self;
+        metrics.step(Groups::ALL, limits, extraction, state, draws);
     }
 
     /// Everything that moves, with its name: first the state, then the metrics.
