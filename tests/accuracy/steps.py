@@ -1,0 +1,37 @@
+"""How many integration steps a case takes: the one place that decides."""
+
+from __future__ import annotations
+
+from math import ceil, inf
+
+import breakaway as bk
+from breakaway.model.scenario.run import longest_step_s
+from tests.accuracy.part import Part
+
+FINER = 50
+"""Steps of the reference over those of the default."""
+STEPS_MAX = 2e8
+"""Most integration steps of one run: a reference that needs more is less fine."""
+
+
+def default_steps(part: Part, period_s: float) -> int:
+    """Steps in a control period where nobody says how many."""
+    stiffness = inf if part.rigid else part.stiffness_n_per_m
+    longest_s = float(longest_step_s(part.mass_kg, stiffness)) if stiffness < inf else inf
+    return max(1, ceil(period_s / longest_s * (1 - 1e-9)))
+
+
+def steps_of(scenario: bk.Scenario) -> int:
+    """Steps in a control period, as a number."""
+    return bk.resolve(scenario).timing.steps_per_period
+
+
+def at_steps(scenario: bk.Scenario, steps: int) -> bk.Scenario:
+    """The scenario at an explicit number of steps, be it more than a file may ask for."""
+    timing = scenario.timing.model_copy(update={"steps_per_period": steps})
+    return scenario.model_copy(update={"timing": timing})
+
+
+def affordable(scenario: bk.Scenario, steps: int) -> int:
+    """That many steps in a control period, or as many as a run may take in all."""
+    return min(steps, int(STEPS_MAX / scenario.samples))
