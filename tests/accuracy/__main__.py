@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import argparse
 import multiprocessing
+import signal
 import sys
 from functools import partial
 
-from breakaway.base.threads import usable_processors
 from tests.accuracy.alone import show_alone
 from tests.accuracy.reach import missed
 from tests.accuracy.scenarios import draw_case
 from tests.accuracy.table import report
 from tests.accuracy.verdict import Verdict, judge
+
+from breakaway.base.threads import usable_processors
 
 
 def main() -> int:
@@ -50,13 +52,22 @@ def _arguments() -> argparse.Namespace:
 
 def _judge_all(seed: int, numbers: range, workers: int) -> list[Verdict]:
     verdicts = []
-    with multiprocessing.Pool(workers) as pool:
+    with multiprocessing.Pool(workers, _leave_interrupts) as pool:
         for verdict in pool.imap_unordered(partial(_judge_one, seed), numbers):
             verdicts.append(verdict)
-            done = f"{len(verdicts)} of {len(numbers)}"
-            print(f"\r{done}, last {verdict.number}: {verdict.kind}\033[K", end="", file=sys.stderr)
-    print("\r\033[K", end="", file=sys.stderr)
+            _show(f"{len(verdicts)} of {len(numbers)}, last {verdict.number}: {verdict.kind}")
+    _show("")
     return sorted(verdicts, key=lambda v: v.number)
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C is for the process that waits for the others, and ends them."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _show(progress: str) -> None:
+    if sys.stderr.isatty():
+        print(f"\r{progress}\033[K", end="", file=sys.stderr, flush=True)
 
 
 def _judge_one(seed: int, number: int) -> Verdict:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from breakaway.model.scenario.files import scenario_toml
 from tests.accuracy.figures import COUNTS, errors_of, floors_of
 from tests.accuracy.scenarios import Case
 from tests.accuracy.steps import FINER, affordable, steps_of
 from tests.accuracy.verdict import figures_at, judge
+
+from breakaway.model.scenario.files import scenario_toml
 
 LEVELS = (1, 2, 5, 10, 25, FINER, 2 * FINER)
 """Steps over those of the default."""

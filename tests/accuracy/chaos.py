@@ -11,10 +11,10 @@ from collections.abc import Iterable
 
 import numpy as np
 from scipy.stats import ks_2samp
-
-import breakaway as bk
 from tests.accuracy.figures import COUNTS, Figures, errors_of, figures_of, worst_of
 from tests.accuracy.steps import at_steps
+
+import breakaway as bk
 
 MOVED = 1e-9
 """By how much the start is moved, as a share of the friction levels."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from breakaway.model.scenario.controller import TimedImpacts
 from tests.accuracy.draws import Draws
 from tests.accuracy.drives import Drive
 from tests.accuracy.kinds import Kind
 from tests.accuracy.part import Part
+
+from breakaway.model.scenario.controller import TimedImpacts
 
 IMPACTS_S, IMPACTS_M = 5.0, 0.06
 """Time and travel that the usual numbers of timed impacts are made for."""

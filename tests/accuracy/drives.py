@@ -43,7 +43,7 @@ def _feed_axis(
     tool_kg, axis = draws.log_uniform(0.1, 50.0), draws.log_uniform(1e5, 1e8)
     tip, tip_kg, stack_yield, stack_n = _tip(kind, draws)
     face_kg = tip_kg or tool_kg
-    contact = _contact(kind, part, face_kg, draws)
+    contact = _contact(part, face_kg, draws)
     together = 1.0 / (1.0 / axis + 1.0 / contact["stiffness_n_per_m"] + stack_yield)
     speed = _speed(part, together, duration_s)
     contact["gap_m"] = speed * duration_s * draws.log_uniform(1e-4, 1e-2)
@@ -91,7 +91,7 @@ def _tip(kind: Kind, draws: Draws) -> tuple[dict[str, Any], float, float, float]
     return table, mass_kg, 1.0 / stiffness, stiffness * stroke_m
 
 
-def _contact(kind: Kind, part: Part, face_kg: float, draws: Draws) -> dict[str, Any]:
+def _contact(part: Part, face_kg: float, draws: Draws) -> dict[str, Any]:
     """A fifth of the contacts have no damping."""
     stiffness = draws.log_uniform(1e6, 1e9)
     ratio = 0.0 if draws.chance(0.2) else draws.log_uniform(0.01, 0.5)

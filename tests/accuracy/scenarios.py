@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from math import pi, sqrt
 from typing import Any
 
-from breakaway.model.scenario.scenario import Scenario
 from tests.accuracy.controllers import controller_table
 from tests.accuracy.draws import Draws
 from tests.accuracy.drives import actuator_table
 from tests.accuracy.kinds import Kind, kind_of
 from tests.accuracy.part import Part, draw_part, joint_table
 from tests.accuracy.steps import default_steps
+
+from breakaway.model.scenario.scenario import Scenario
 
 SHORTEST_PERIODS = 30
 """Fewest control periods of a case."""
@@ -92,7 +93,7 @@ def _disturbance(part: Part, period_s: float, draws: Draws) -> dict[str, Any]:
 
 
 def _limits(part: Part, duration_s: float) -> dict[str, Any]:
-    """Nothing ends a case but its release: a bound that is passed in one of two runs tells nothing."""
+    """Nothing ends a case but its release: what ends one of two runs says little of its steps."""
     return {
         "diverged_error_m": 1e3,
         "diverged_force_n": 1e12,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from math import ceil, inf
 
+from tests.accuracy.part import Part
+
 import breakaway as bk
 from breakaway.model.scenario.run import longest_step_s
-from tests.accuracy.part import Part
 
 FINER = 50
 """Steps of the reference over those of the default."""

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from math import inf
 
 import numpy as np
-
 from tests.accuracy.figures import COUNTS
 from tests.accuracy.verdict import State, Verdict
 

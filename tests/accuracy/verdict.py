@@ -1,4 +1,4 @@
-"""What becomes of one case: its errors at the default steps against a reference that is converged."""
+"""What becomes of one case: its errors at the default steps against a converged reference."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import time
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-import breakaway as bk
 from tests.accuracy.chaos import is_chaotic, unlike
 from tests.accuracy.figures import Figures, errors_of, figures_of, floors_of, worst_of
 from tests.accuracy.scenarios import Case
 from tests.accuracy.steps import FINER, affordable, at_steps, steps_of
+
+import breakaway as bk
 
 CONVERGED = 3e-3
 """Largest error of a reference against one of half its steps."""
@@ -87,7 +88,7 @@ def judge(case: Case) -> Verdict:
 
 
 def _reference(scenario: bk.Scenario, steps: int, floors: Figures) -> tuple[Figures, int, float]:
-    """Figures at steps that are fine enough, these steps, and by how much the last doubling moved."""
+    """Figures at fine enough steps, these steps, and by how much the last doubling moved."""
     count = affordable(scenario, steps * FINER)
     before = figures_at(scenario, max(1, count // 2))
     for _ in range(DOUBLINGS):
