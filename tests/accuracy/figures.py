@@ -82,7 +82,7 @@ def errors_of(figures: Figures, reference: Figures, floors: Figures) -> dict[str
     errors = {}
     for name, exact in reference.items():
         value = figures[name]
-        if name == "mean_impact_s" and exact > 0:
+        if name == "mean_impact_s" and reference["impacts"] > 0:
             value *= figures["impacts"] / reference["impacts"]
         if name in COUNTS:
             errors[name] = abs(value - exact)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import inf, sqrt
 from typing import Any
 
 from tests.accuracy.draws import Draws
@@ -24,8 +24,12 @@ class Part:
     guide_m: float = 0.0
 
     @property
+    def held_n_per_m(self) -> float:
+        return inf if self.rigid else self.stiffness_n_per_m
+
+    @property
     def presliding_m(self) -> float:
-        return 0.0 if self.rigid else self.stiction_n / self.stiffness_n_per_m
+        return self.stiction_n / self.held_n_per_m
 
     @property
     def fastest_s(self) -> float:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from tests.accuracy.impacts import CLOSE as CLOSE_PEAK
+from tests.accuracy.impacts import Impact
 from tests.accuracy.verdict import CLOSE, State, Verdict
 
 SHARE_CLOSE = 0.97
@@ -14,7 +16,7 @@ SHARE_CHAOTIC = 0.05
 """Share of cases that are chaotic, at most."""
 
 
-def missed(verdicts: Sequence[Verdict]) -> Iterator[str]:
+def missed(verdicts: Sequence[Verdict], impacts: Sequence[Impact]) -> Iterator[str]:
     """Say what is missed, one line each; nothing where all is reached."""
     judged = [v for v in verdicts if v.state is not State.CHAOTIC]
     close = sum(v.worst <= CLOSE for v in judged)
@@ -29,3 +31,6 @@ def missed(verdicts: Sequence[Verdict]) -> Iterator[str]:
     unlike = sum(bool(v.unlike) for v in verdicts)
     if unlike:
         yield f"distributed otherwise at finer steps: {unlike} chaotic cases"
+    far_peaks = sum(one.error > CLOSE_PEAK for one in impacts)
+    if far_peaks:
+        yield f"peaks of impacts within {CLOSE_PEAK:.0%}: not for {far_peaks} of {len(impacts)}"

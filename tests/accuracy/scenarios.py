@@ -56,7 +56,7 @@ def draw_case(seed: int, number: int) -> Case:
             "duration_s": duration_s,
             "control_period_s": period_s,
             "one_sample_delay": delayed,
-            "steps_per_period": default_steps(part, period_s),
+            "steps_per_period": default_steps(part.mass_kg, part.held_n_per_m, period_s),
         },
         "limits": _limits(part, duration_s),
         "trace": {"every_samples": 0},

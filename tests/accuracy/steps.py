@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, inf
-
-from tests.accuracy.part import Part
+from math import ceil, isfinite
 
 import breakaway as bk
 from breakaway.model.scenario.run import longest_step_s
@@ -15,10 +13,11 @@ STEPS_MAX = 2e8
 """Most integration steps of one run: a reference that needs more is less fine."""
 
 
-def default_steps(part: Part, period_s: float) -> int:
+def default_steps(mass_kg: float, stiffness_n_per_m: float, period_s: float) -> int:
     """Steps in a control period where nobody says how many."""
-    stiffness = inf if part.rigid else part.stiffness_n_per_m
-    longest_s = float(longest_step_s(part.mass_kg, stiffness)) if stiffness < inf else inf
+    if not isfinite(stiffness_n_per_m):
+        return 1
+    longest_s = float(longest_step_s(mass_kg, stiffness_n_per_m))
     return max(1, ceil(period_s / longest_s * (1 - 1e-9)))
 
 

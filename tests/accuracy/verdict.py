@@ -5,9 +5,11 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, field
 from enum import StrEnum
+from pathlib import Path
 
 from tests.accuracy.chaos import is_chaotic, unlike
 from tests.accuracy.figures import Figures, errors_of, figures_of, floors_of, worst_of
+from tests.accuracy.independent import is_known, solve
 from tests.accuracy.scenarios import Case
 from tests.accuracy.steps import FINER, affordable, at_steps, steps_of
 
@@ -46,20 +48,24 @@ class Verdict:
     """By metric; of a chaotic case none."""
     unlike: dict[str, float] = field(default_factory=dict)
     """Of a chaotic case: metrics whose distributions differ, each with how far."""
+    solved: dict[str, float] = field(default_factory=dict)
+    """Errors against the independent solver, of the metrics that it knows."""
+    limit: dict[str, float] = field(default_factory=dict)
+    """Errors of the reference against the independent solver."""
     default_wall_s: float = 0.0
     wall_s: float = 0.0
 
     @property
     def worst(self) -> float:
-        return worst_of(self.errors) if self.errors else 0.0
+        return max(map(worst_of, filter(None, (self.errors, self.solved))), default=0.0)
 
 
 def figures_at(scenario: bk.Scenario, steps: int) -> Figures:
     return figures_of(bk.simulate(at_steps(scenario, steps)))
 
 
-def judge(case: Case) -> Verdict:
-    """Run a case at its default and at finer steps until nothing moves."""
+def judge(case: Case, solver: Path | None = None) -> Verdict:
+    """Run a case at its default and at finer steps until nothing moves, and solve it if we can."""
     began = time.perf_counter()
     scenario, floors = case.scenario, floors_of(case.scenario)
     steps = steps_of(scenario)
@@ -73,6 +79,7 @@ def judge(case: Case) -> Verdict:
     if doubtful and is_chaotic(scenario, reference_steps, floors):
         state, errors = State.CHAOTIC, {}
         differs = unlike(scenario, steps, reference_steps, floors)
+    solution = solve(solver, scenario) if errors and solver and is_known(scenario) else None
     return Verdict(
         number=case.number,
         kind=str(case.kind),
@@ -82,6 +89,8 @@ def judge(case: Case) -> Verdict:
         samples=scenario.samples,
         errors=errors,
         unlike=differs,
+        solved=_errors_of_known(default, solution, floors),
+        limit=_errors_of_known(reference, solution, floors),
         default_wall_s=default_wall_s,
         wall_s=time.perf_counter() - began,
     )
@@ -99,3 +108,9 @@ def _reference(scenario: bk.Scenario, steps: int, floors: Figures) -> tuple[Figu
             break
         before, count = found, finer
     return found, count, moved
+
+
+def _errors_of_known(
+    figures: Figures, solution: Figures | None, floors: Figures
+) -> dict[str, float]:
+    return errors_of(figures, solution, floors) if solution else {}
