@@ -12,7 +12,7 @@ from tests.accuracy.figures import Figures
 import breakaway as bk
 
 SOURCE = Path(__file__).with_name("solver.c")
-LAWS = ("lugre", "elasto_plastic", "two_region", "coulomb_stiction")
+LAWS = ("lugre", "elasto_plastic", "gms", "two_region", "coulomb_stiction")
 DRIVES = ("ideal", "push_only", "force", "feed_axis")
 CONTROLLERS = ("force_ramp", "pid", "steady_feed")
 REFERENCES = ("step", "ramp", "minimum_jerk", "trapezoidal_velocity")
@@ -78,6 +78,8 @@ def _numbers(scenario: bk.Scenario) -> dict[str, Any]:
         "stribeck": getattr(joint, "stribeck_velocity_m_per_s", 1.0),
         "damping_velocity": getattr(joint, "damping_velocity_m_per_s", None) or 0.0,
         "elastic_share": getattr(joint, "elastic_share", 0.0),
+        "elements": getattr(joint, "elements", 1),
+        "attraction": getattr(joint, "attraction_n_per_s", 0.0),
         "mass": scenario.part.mass_kg,
         "duration": scenario.samples * timing.control_period_s,
         "period": timing.control_period_s,

@@ -8,14 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum law { LUGRE, ELASTO_PLASTIC, TWO_REGION, COULOMB_STICTION };
+enum law { LUGRE, ELASTO_PLASTIC, GMS, TWO_REGION, COULOMB_STICTION };
 enum drive { IDEAL, PUSH_ONLY, LAGGED, FEED };
 enum controller { RAMP, PID, STEADY_FEED };
 enum reference { STEP, LINEAR, MINIMUM_JERK, TRAPEZOID };
 
 #define NUMBERS(N) \
     N(law) N(stiction) N(coulomb) N(residual) N(guide) N(backward) N(stiffness) N(damping) \
-    N(viscous) N(stribeck) N(damping_velocity) N(elastic_share) N(mass) \
+    N(viscous) N(stribeck) N(damping_velocity) N(elastic_share) N(elements) N(attraction) N(mass) \
     N(drive) N(force_max) N(bandwidth) N(force_rate) \
     N(axis_stiffness) N(axis_damping) N(tool_mass) N(speed_max) N(acceleration) \
     N(contact_stiffness) N(contact_damping) N(gap) N(backlash) N(grips) \
@@ -33,11 +33,12 @@ static struct { const char *name; double *value; } const names[] = {
 };
 
 /* What is integrated: motion first, then what is counted. */
-enum { X, V, Z, FORCE, TOOL, TOOL_V, MOVING, IMPULSE = MOVING, SQUARE, WORK, JOINT, SUPPLIED,
+enum { ELEMENTS_MAX = 10 };
+enum { X, V, FORCE, TOOL, TOOL_V, Z, MOVING = Z + ELEMENTS_MAX, IMPULSE = MOVING, SQUARE, WORK, JOINT, SUPPLIED,
        CONTACT, JUMP, STATES };
 
 /* What happens between events. */
-static struct { int stuck; double direction; } slip;
+static struct { int stuck; double direction; } slip, element[ELEMENTS_MAX];
 static double command, speed_asked;           /* held over a period */
 static double feed, feed_v, feed_a;           /* of the drive at the start of a stretch */
 static double error_scale[MOVING];
@@ -69,11 +70,37 @@ static double onset(double z, double v, double g)
     return s * s * (3.0 - 2.0 * s);
 }
 
+static double damping(double v)
+{
+    return p.damping_velocity > 0.0 ? p.damping * bell(v, p.damping_velocity) : p.damping;
+}
+
+/* Equal springs whose yield deflections rise linearly. */
+static double element_stiffness(void) { return p.stiffness / p.elements; }
+
+static double element_level(int i) { return 2.0 * (i + 1) / (p.elements * (p.elements + 1)); }
+
+/* Springs side by side: each sticks up to its share of the level, then follows it. */
+static double generalized_maxwell_slip(double x, double v, const double *z, double *z_rate)
+{
+    double g = stribeck(x, v), k = element_stiffness(), force = p.viscous * v;
+    for (int i = 0; i < p.elements; i++) {
+        double d = element[i].direction;
+        z_rate[i] = v;
+        if (!element[i].stuck) {
+            double follows = p.attraction * (element_level(i) * d - k * z[i] / g) / k;
+            z_rate[i] = d * fmin(d * follows, fabs(v));
+        }
+        force += k * z[i] + damping(v) / p.elements * z_rate[i];
+    }
+    return force;
+}
+
 /* Force of the joint; sets dz/dt. */
 static double friction(const double *y, double push, double *z_rate)
 {
-    double x = y[X], v = y[V], z = y[Z], g, c;
-    *z_rate = 0.0;
+    double x = y[X], v = y[V], z = y[Z], g;
+    memset(z_rate, 0, ELEMENTS_MAX * sizeof *z_rate);
     if (x >= p.guide) return 0.0;
     if (p.law == COULOMB_STICTION) {
         if (slip.stuck) return push;
@@ -84,10 +111,10 @@ static double friction(const double *y, double push, double *z_rate)
         *z_rate = v;
         return p.stiffness * z + p.damping * v;
     }
+    if (p.law == GMS) return generalized_maxwell_slip(x, v, y + Z, z_rate);
     g = stribeck(x, v);
     *z_rate = v - onset(z, v, g) * p.stiffness * fabs(v) / g * z;
-    c = p.damping_velocity > 0.0 ? p.damping * bell(v, p.damping_velocity) : p.damping;
-    return p.stiffness * z + c * *z_rate + p.viscous * v;
+    return p.stiffness * z + damping(v) * *z_rate + p.viscous * v;
 }
 
 static double pressed(const double *y) { return y[TOOL] - p.gap - y[X]; }
@@ -106,12 +133,12 @@ static double push_of(const double *y)
 
 static void rates(double t, const double *y, double *dy)
 {
-    double push = push_of(y), z_rate, joint = friction(y, push, &z_rate), axis, w;
+    double z_rate[ELEMENTS_MAX], push = push_of(y), joint = friction(y, push, z_rate), axis, w;
     int held = p.law == COULOMB_STICTION && slip.stuck && y[X] < p.guide;
     memset(dy, 0, STATES * sizeof *dy);
     dy[X] = y[V];
     dy[V] = held ? 0.0 : (push - joint) / p.mass;
-    dy[Z] = z_rate;
+    memcpy(dy + Z, z_rate, sizeof z_rate);
     if (p.drive == LAGGED) {
         double target = fmin(fmax(command, 0.0), p.force_max);
         double wanted = (target - y[FORCE]) * 2.0 * M_PI * p.bandwidth;
@@ -135,7 +162,15 @@ static void rates(double t, const double *y, double *dy)
 
 /* Everything that changes the equations or is counted when it changes; a step ends where one does. */
 enum { TOUCHES = 1, PULLS = 2, GONE = 4, LOOSE = 8, FREE = 16, JUMPS = 32, FORWARD = 64, TURNS = 128,
-       BREAKS = 256, PUSHES = 512 };
+       BREAKS = 256, PUSHES = 512, FIRST_ELEMENT = 1024 };
+
+/* Whether an element that sticks should slip, or one that slips should stick. */
+static int changes(int i, const double *y)
+{
+    double v = y[V], z = y[Z + i];
+    if (!element[i].stuck) return v * element[i].direction < 0.0;
+    return v * z > 0.0 && element_stiffness() * fabs(z) > element_level(i) * stribeck(y[X], v);
+}
 
 static int flags_of(const double *y)
 {
@@ -150,6 +185,8 @@ static int flags_of(const double *y)
     if (y[V] > 0.0) flags |= FORWARD;
     if (push > p.contact_force) flags |= PUSHES;
     if (y[X] >= p.guide) return flags;
+    for (int i = 0; p.law == GMS && i < p.elements; i++)
+        if (changes(i, y)) flags |= FIRST_ELEMENT << i;
     if (!slip.stuck && y[V] * slip.direction < 0.0) flags |= TURNS;
     if (slip.stuck && p.law == COULOMB_STICTION
         && fabs(push) > level(p.stiction, y[X]) * backward(push)) flags |= BREAKS;
@@ -204,7 +241,12 @@ static void note(double t, const double *y, int before, int after)
 /* What an event does to the state. */
 static void settle(double *y, int flags)
 {
-    if (flags & GONE) y[Z] = 0.0, slip.stuck = 1;
+    for (int i = 0; i < ELEMENTS_MAX; i++) {
+        if (flags & GONE) y[Z + i] = 0.0, element[i].stuck = slip.stuck = 1;
+        if (!(flags & FIRST_ELEMENT << i)) continue;
+        element[i].stuck = !element[i].stuck;
+        element[i].direction = y[V] > 0.0 ? 1.0 : -1.0;
+    }
     if (flags & TURNS) {
         slip.stuck = 1;
         if (p.law == TWO_REGION) return;
@@ -361,17 +403,20 @@ static void read_numbers(void)
 
 int main(void)
 {
-    double y[STATES] = {0}, simulated = 0.0, stored, speed;
+    double y[STATES] = {0}, simulated = 0.0, stored = 0.0, speed;
     read_numbers();
     slip.stuck = 1;
+    for (int i = 0; i < ELEMENTS_MAX; i++) element[i].stuck = 1;
     found.loose_s = found.release_s = found.release_v = NAN;
     speed = 1e-3 * p.guide / p.duration;
     for (int i = 0; i < MOVING; i++) error_scale[i] = 1e-9 * 1e-3 * p.guide;
     error_scale[V] = error_scale[TOOL_V] = 1e-9 * speed;
-    error_scale[Z] = 1e-9 * 1e-2 * (p.stiffness > 0.0 ? p.stiction / p.stiffness : 1.0);
+    for (int i = 0; i < ELEMENTS_MAX; i++)
+        error_scale[Z + i] = 1e-11 * (p.stiffness > 0.0 ? p.stiction / p.stiffness : 1.0);
     error_scale[FORCE] = 1e-9 * p.stiction;
     if (!run(y, &simulated)) return 1;
-    stored = 0.5 * p.stiffness * y[Z] * y[Z];
+    for (int i = 0; i < p.elements; i++)
+        stored += 0.5 * element_stiffness() * y[Z + i] * y[Z + i];
     printf("simulated_s %.17g\niae_m_s %.17g\nlargest_error_m %.17g\n", simulated, found.error,
            found.largest_error);
     printf("peak_force_n %.17g\nmean_force_n %.17g\nrms_force_n %.17g\n", found.peak,

@@ -11,6 +11,8 @@ FINER = 50
 """Steps of the reference over those of the default."""
 STEPS_MAX = 2e8
 """Most integration steps of one run: a reference that needs more is less fine."""
+FIRST_STEPS_MAX = 4e7
+"""As many for the first try of a reference: only one that is not converged needs more."""
 
 
 def default_steps(mass_kg: float, stiffness_n_per_m: float, period_s: float) -> int:
@@ -32,6 +34,6 @@ def at_steps(scenario: bk.Scenario, steps: int) -> bk.Scenario:
     return scenario.model_copy(update={"timing": timing})
 
 
-def affordable(scenario: bk.Scenario, steps: int) -> int:
+def affordable(scenario: bk.Scenario, steps: int, most: float = STEPS_MAX) -> int:
     """That many steps in a control period, or as many as a run may take in all."""
-    return min(steps, int(STEPS_MAX / scenario.samples))
+    return min(steps, max(1, int(most / scenario.samples)))

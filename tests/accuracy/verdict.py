@@ -11,7 +11,7 @@ from tests.accuracy.chaos import is_chaotic, unlike
 from tests.accuracy.figures import Figures, errors_of, figures_of, floors_of, worst_of
 from tests.accuracy.independent import is_known, solve
 from tests.accuracy.scenarios import Case
-from tests.accuracy.steps import FINER, affordable, at_steps, steps_of
+from tests.accuracy.steps import FINER, FIRST_STEPS_MAX, affordable, at_steps, steps_of
 
 import breakaway as bk
 
@@ -98,7 +98,7 @@ def judge(case: Case, solver: Path | None = None) -> Verdict:
 
 def _reference(scenario: bk.Scenario, steps: int, floors: Figures) -> tuple[Figures, int, float]:
     """Figures at fine enough steps, these steps, and by how much the last doubling moved."""
-    count = affordable(scenario, steps * FINER)
+    count = max(2 * steps, affordable(scenario, steps * FINER, FIRST_STEPS_MAX))
     before = figures_at(scenario, max(1, count // 2))
     for _ in range(DOUBLINGS):
         found = figures_at(scenario, count)
