@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from scipy.stats import ks_2samp
 from tests.accuracy.figures import COUNTS, Figures, errors_of, figures_of, worst_of
 from tests.accuracy.steps import at_steps
 
@@ -26,8 +25,8 @@ FINER = 10
 """Steps of the other distribution over those of the default."""
 LIKE = 0.05
 """Difference of quartiles, relative to the median, that is none."""
-DOUBT = 3e-4
-"""Probability by chance below which two distributions differ."""
+APART_SHARE = 0.65
+"""Difference of cumulative shares that 20 runs of each show by chance in 4 of 10,000 metrics."""
 
 
 def moved_starts(scenario: bk.Scenario, numbers: Iterable[int]) -> Iterable[bk.Scenario]:
@@ -81,5 +80,7 @@ def _gap(coarse: np.ndarray, fine: np.ndarray, floor: float) -> float:
     scale = max(abs(quartiles[1][1]), floor)
     if np.all(np.abs(quartiles[0] - quartiles[1]) <= LIKE * scale):
         return 0.0
-    test = ks_2samp(*ends)
-    return float(test.statistic) if test.pvalue < DOUBT else 0.0
+    places = np.concatenate(ends)
+    below = [np.searchsorted(np.sort(side), places, side="right") / side.size for side in ends]
+    gap = float(np.max(np.abs(below[0] - below[1])))
+    return gap if gap >= APART_SHARE else 0.0
