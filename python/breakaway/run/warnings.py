@@ -33,6 +33,7 @@ def warnings_of(
     """Say what is doubtful about a run of a resolved scenario, one sentence each."""
     if outcome == "diverged":
         yield from _diverged(scenario, metrics)
+    yield from _lost_of_the_log(scenario)
     yield from _stuck_but_loose(scenario)
     yield from _negative_gains(scenario)
     yield from _bristles_push(scenario, trace)
@@ -56,6 +57,12 @@ def _diverged(scenario: Scenario, metrics: RunMetrics) -> Iterator[str]:
     if not force_n <= most_n:
         bound = f"limits.diverged_force_n = {most_n:.5g} N"
         yield f"{at}: peak force {force_n:.5g} N is above {bound}"
+
+
+def _lost_of_the_log(scenario: Scenario) -> Iterator[str]:
+    source = scenario.joint_source
+    if source is not None and source.dropped:
+        yield f"joint_source: of the joint of {source.log} the run leaves out {source.dropped}"
 
 
 def _stuck_but_loose(scenario: Scenario) -> Iterator[str]:
