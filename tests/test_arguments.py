@@ -247,6 +247,7 @@ def calls(w):
         "LogUniform.quantile": (bk.LogUniform(low=1.0, high=2.0).quantile, {"u": t_s}),
         "LogUniform.scaled": (bk.LogUniform(low=1.0, high=2.0).scaled, {"factor": 1.0}),
         "Method.told": (w.method.told, {"engagement_length_m": t_s + 1.0}),
+        "Method.tuned_among": (w.method.tuned_among, {"seed": 0, "numbers": range(4)}),
         "Normal.quantile": (bk.Normal(mean=1.0, std=0.1).quantile, {"u": t_s}),
         "Normal.scaled": (bk.Normal(mean=1.0, std=0.1).scaled, {"factor": 1.0}),
         "PidGains": (bk.design.PidGains, {"kp": 1.0, "ki": 1.0, "kd": 1.0}),

@@ -153,18 +153,42 @@ def test_scaling_by_one_changes_nothing(distribution, shares):
     np.testing.assert_allclose(same.quantile(u), values, rtol=1e-6, atol=1e-6 * size)
 
 
+def fills_its_range(distribution):
+    return isinstance(distribution, bk.Uniform | bk.LogUniform)
+
+
+@given(distribution=distributions(), factor=st.floats(0.01, 1000.0), share=SHARE)
+def test_scaling_stays_within_the_range(distribution, factor, share):
+    """No bound moves, whatever the factor; and what is above 0 stays above 0."""
+    if fills_its_range(distribution) and factor > 1.0:
+        with pytest.raises(bk.ScenarioError, match=r"^factor: .* is not <= 1, because the dist"):
+            distribution.scaled(factor)
+        return
+    value = float(distribution.scaled(factor).quantile(np.array([share]))[0])
+    low, high = range_of(distribution)
+    if isinstance(distribution, bk.Samples):
+        assert value > 0.0 or low <= 0.0
+    else:
+        assert low - 1e-9 * abs(low) <= value <= high + 1e-9 * abs(high)
+
+
 @given(distribution=distributions(), factor=st.floats(0.01, 3.0), share=SHARE)
 def test_scaling_stretches_about_the_middle(distribution, factor, share):
-    """Every quantile moves from or to the center by the factor; of ratios for logarithms."""
+    """Without bounds every quantile moves from or to the center by the factor, or its logarithm."""
+    factor = min(factor, 1.0) if fills_its_range(distribution) else factor
+    if isinstance(distribution, bk.Normal | bk.LogNormal):
+        distribution = distribution.model_copy(update={"low": None, "high": None})
     u = np.array([share])
     before = float(distribution.quantile(u)[0])
     after = float(distribution.scaled(factor).quantile(u)[0])
-    if isinstance(distribution, bk.LogUniform | bk.LogNormal):
-        center = (
-            distribution.median
-            if isinstance(distribution, bk.LogNormal)
-            else (distribution.low * distribution.high) ** 0.5
-        )
+    positive = isinstance(distribution, bk.Samples) and min(distribution.values) > 0.0
+    if isinstance(distribution, bk.LogUniform | bk.LogNormal) or positive:
+        if positive:
+            center = float(np.exp(np.log(distribution.values).mean()))
+        elif isinstance(distribution, bk.LogNormal):
+            center = distribution.median
+        else:
+            center = (distribution.low * distribution.high) ** 0.5
         assert np.log(after / center) == pytest.approx(
             factor * np.log(before / center), rel=1e-6, abs=1e-6
         )
@@ -178,6 +202,16 @@ def test_scaling_stretches_about_the_middle(distribution, factor, share):
     bounds = filter(np.isfinite, range_of(distribution))
     size = max(map(abs, [center, before, getattr(distribution, "std", 0.0), *bounds]))
     assert after - center == pytest.approx(factor * (before - center), rel=1e-6, abs=1e-6 * size)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "nearest"),
+    [(300.0, None, 300.0), (300.0, 400.0, 300.0), (None, -300.0, -300.0)],
+)
+@pytest.mark.parametrize("std", [0.0, 1e-3, 1.0])
+def test_a_law_far_outside_its_range_is_at_the_nearer_bound(low, high, nearest, std):
+    values = bk.Normal(mean=0.0, std=std, low=low, high=high).quantile(U)
+    np.testing.assert_allclose(values, nearest, rtol=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -117,11 +117,14 @@ def test_joint_tells_where_each_value_came_from(call: Call, joint_toml: Path) ->
     assert content["from_scenario"]["joint.stiction_n"]["value"] == 450.0
     assert "breakaway from rest" in content["from_scenario"]["joint.stiction_n"]["reason"]
     assert {"rig.offset_n", "asymmetric.coulomb_positive_n"} <= set(content["not_used"])
-    assert math.isclose(content["weight_as_residual_n"], 3.0 * 9.81, rel_tol=1e-3)
-    assert content["notes"] == ["gains: redesigned for the identified joint"]
+    assert math.isclose(content["residual_n"]["value"], 9.81 / 360.0 * 300.0, rel_tol=1e-3)
+    assert content["residual_n"]["reason"].startswith("2.73 % of the identified coulomb_n, as in ")
+    assert content["law"]["value"] == "lugre"
+    assert content["gains"] == "gains: redesigned for the identified joint"
     shown = call("run", "paper_as_computed", "--joint", joint_toml).stdout
-    for words in ("motor.csv", "not used", "belongs to the rig", "redesigned"):
+    for words in ("motor.csv", "not used", "belongs to the rig", "redesigned", "of the identified"):
         assert words in shown
+    assert "weight of the identified mass" not in shown
 
 
 @pytest.mark.slow
@@ -145,7 +148,7 @@ def test_joint_keeps_given_gains_and_warns_of_low_stiction(
     shown = call("run", given, "--joint", joint_toml)
     assert shown.exit_code == 0
     assert "not designed for the identified joint" in shown.stdout
-    assert "exceeds the scenario's stiction_n of 200 N" in shown.stdout
+    assert "joint.stiction_n = 200 N is below joint.coulomb_n = 300 N" in shown.stdout
 
 
 def test_joint_needs_a_law_that_has_its_fields(
@@ -165,9 +168,8 @@ def test_joint_needs_a_law_that_has_its_fields(
 def test_joint_that_can_not_be_designed_for_is_named(
     call: Call, joint_toml: Path, tmp_path: Path
 ) -> None:
-    text = joint_toml.read_text().replace("mass_kg = ", "mass_kg = 9", 1)
-    joint_toml.write_text(text)
-    failed = call("run", "paper_as_computed", "--joint", joint_toml, "--out", tmp_path / "out")
+    stated = save(tmp_path / "stated.toml", {"joint.residual_n": 350.0})
+    failed = call("run", stated, "--joint", joint_toml, "--out", tmp_path / "out")
     assert failed.exit_code == 2
     assert f"{joint_toml} laid over paper_as_computed: joint.coulomb_n" in failed.stderr
     assert not (tmp_path / "out").exists()

@@ -110,7 +110,7 @@ def test_with_a_misspelled_field(paper):
 
 # Files
 
-FLOATS = st.floats(min_value=5e-324, max_value=1.7976931348623157e308)
+FLOATS = st.floats(min_value=5e-324, max_value=1e6)
 READABLE = st.characters(exclude_categories=["Cc", "Cf", "Cn", "Cs", "Zl", "Zp"])
 
 

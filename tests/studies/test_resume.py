@@ -28,7 +28,7 @@ def progress(at):
 run_study(load_study(sys.argv[1]), out=sys.argv[2], resume=True, threads=1, progress=progress)
 """
 FIGURES = (".png", ".svg")
-SPREAD = {"distribution": "uniform", "low": 540.0, "high": 560.0}
+SPREAD = {"distribution": "normal", "mean": 550.0, "std": 6.25}
 
 
 @pytest.fixture(scope="module")

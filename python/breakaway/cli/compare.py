@@ -80,6 +80,13 @@ def compare(
             autocompletion=method_preset,
         ),
     ] = None,
+    allow_training_parts: Annotated[
+        bool | None,
+        typer.Option(
+            "--allow-training-parts",
+            help="Compare a method even on parts that it was tuned on. Left out: refused.",
+        ),
+    ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue the comparison in DIR.")
     ] = False,
@@ -110,6 +117,7 @@ def compare(
                 runs=runs,
                 seed=seed,
                 baselines=baseline,
+                allow_training_parts=allow_training_parts,
                 out=out,
                 resume=resume,
                 threads=threads,

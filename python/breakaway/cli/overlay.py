@@ -8,14 +8,11 @@ from typing import Any
 
 from breakaway.cli.quantity import show
 from breakaway.cli.sheet import Sheet
-from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
 from breakaway.measure.identification.joint_file import JointFile
 from breakaway.model.scenario import PolePlacement, Scenario, gain_sets
 from breakaway.run.overlay import lay_file_over
 from breakaway.run.resolution import resolve
-
-WEIGHT = "left out, so the weight of the identified mass"
 
 
 @dataclass(frozen=True)
@@ -26,6 +23,8 @@ class Overlay:
     """The joint file."""
     joint_file: JointFile
     """What it says."""
+    before: Scenario
+    """The scenario as it was."""
     scenario: Scenario
     """The changed scenario."""
 
@@ -33,11 +32,16 @@ class Overlay:
         """Fields that the log gave."""
         return self.joint_file.scenario_changes()
 
-    def weight_n(self) -> float | None:
-        """Give the residual force where it follows from the identified mass."""
-        if self.scenario.joint.residual_n is not None:
-            return None
-        return residual_n(self.scenario.joint, self.scenario.part.mass_kg)
+    def law(self) -> tuple[str, str]:
+        """Give what the friction law is from, and why."""
+        if self.joint_file.joint.law is None:
+            return "scenario", "the fit does not tell how a stuck joint yields"
+        return self.joint_file.provenance.log, "the fit was made with it"
+
+    def residual(self) -> tuple[float | None, str]:
+        """Give the friction left at the end of the guide, in N, and why where none stated it."""
+        source = self.scenario.joint_source
+        return self.scenario.joint.residual_n, source.residual if source else ""
 
     def from_scenario(self) -> dict[str, tuple[float, str]]:
         """Fields that the scenario gave, because the log cannot tell; with the reason."""
@@ -46,25 +50,6 @@ class Overlay:
             for field, reason in self.joint_file.not_identified.items()
         }
         return {field: (value, why) for field, (value, why) in found.items() if value is not None}
-
-    def unused(self) -> dict[str, tuple[float, str]]:
-        """Figures of the log that no scenario has a place for; with the reason."""
-        each = self.joint_file.asymmetric
-        same = "the friction laws are the same in both directions"
-        rig = {
-            "rig.offset_n": (self.joint_file.rig.offset_n, "belongs to the rig, not to the joint")
-        }
-        if each is None:
-            return rig
-        return (
-            rig
-            | {"asymmetric.mass_kg": (each.mass_kg, "the symmetric fit's mass is used")}
-            | {
-                f"asymmetric.{name}": (getattr(each, name), same)
-                for name in type(each).model_fields
-                if name not in ("mass_kg", "standard_error")
-            }
-        )
 
     def gains(self) -> str:
         """Say what becomes of the controller's gains."""
@@ -80,17 +65,6 @@ class Overlay:
             return f"gains: {texts[kinds.pop()]}"
         return f"gains: where designed, {texts['designed']}; where given, {texts['given']}"
 
-    def notes(self) -> list[str]:
-        """Say what to keep in mind about this mixture of log and scenario."""
-        notes = [self.gains()]
-        joint = self.scenario.joint
-        if joint.coulomb_n > joint.stiction_n:
-            notes.append(
-                f"the log's coulomb_n exceeds the scenario's stiction_n of {joint.stiction_n:g} N: "
-                "this joint slides at more than breaks it loose; set joint.stiction_n"
-            )
-        return notes
-
     def tables(self) -> list[Sheet | str]:
         """Give the tables that a person reads."""
         log = self.joint_file.provenance.log
@@ -102,13 +76,16 @@ class Overlay:
         )
         for field, value in self.from_log().items():
             shown.add(field, show(field, value), log, "identified")
-        if (weight_n := self.weight_n()) is not None:
-            shown.add("joint.residual_n", show("residual_n", weight_n), log, WEIGHT)
+        shown.add("joint.law", self.scenario.joint.law, *self.law())
+        left_n, because = self.residual()
+        if because and left_n is not None:
+            shown.add("joint.residual_n", show("residual_n", left_n), "share", because)
         for field, (value, reason) in self.from_scenario().items():
-            shown.add(field, show(field, value), "scenario", reason)
-        for field, (value, reason) in self.unused().items():
+            own = _value(self.before, field) is not None
+            shown.add(field, show(field, value), "scenario" if own else "usual", reason)
+        for field, (value, reason) in self.joint_file.dropped().items():
             shown.add(field, show(field, value), "not used", reason)
-        return [shown, *self.notes(), ""]
+        return [shown, self.gains(), ""]
 
     def to_dict(self) -> dict[str, Any]:
         """Give the same for JSON."""
@@ -116,16 +93,17 @@ class Overlay:
             "file": str(self.path),
             "log": self.joint_file.provenance.log,
             "from_log": self.from_log(),
-            "weight_as_residual_n": self.weight_n(),
+            "law": {"value": self.scenario.joint.law, "reason": self.law()[1]},
+            "residual_n": {"value": self.residual()[0], "reason": self.residual()[1]},
             "from_scenario": {
                 field: {"value": value, "reason": reason}
                 for field, (value, reason) in self.from_scenario().items()
             },
             "not_used": {
                 field: {"value": value, "reason": reason}
-                for field, (value, reason) in self.unused().items()
+                for field, (value, reason) in self.joint_file.dropped().items()
             },
-            "notes": self.notes(),
+            "gains": self.gains(),
         }
 
 
@@ -144,7 +122,7 @@ def overlay_of(path: Path, scenario: Scenario) -> Overlay:
         resolve(changed)  # finds what cannot be designed while the joint file can be named
     except ScenarioError as error:
         raise ScenarioError(f"{path} laid over {scenario.name}: {error}") from None
-    return Overlay(path, joint_file, changed)
+    return Overlay(path, joint_file, scenario, changed)
 
 
 def _value(scenario: Scenario, field: str) -> float | None:

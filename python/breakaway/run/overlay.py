@@ -5,18 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 from breakaway.base.arguments import check_arguments
+from breakaway.design.pole_placement import residual_n
 from breakaway.errors import ScenarioError
-from breakaway.measure.identification.joint_file import JointFile
+from breakaway.measure.identification.joint_file import NO_PLACE, JointFile
 from breakaway.measure.identification.result import Identification
-from breakaway.model.scenario.laws import laws_with
+from breakaway.model.scenario.joint_source import JointSource
+from breakaway.model.scenario.laws import laws_with, values_under
 from breakaway.model.scenario.scenario import Scenario
 
 
 def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path) -> Scenario:
     """Lay an identified joint over a scenario, and the mass if the log determined it.
 
-    What the log did not determine stays as in the scenario. Gains by pole placement are then
-    designed for the identified joint; gains that are given stay.
+    The friction law of the fit comes along, and how friction differs with the direction. What the
+    log did not determine stays as in the scenario. Friction that is left at the end of the guide,
+    where the scenario does not state it, becomes the same share of the identified Coulomb friction
+    as it was of the scenario's: the weight, which it would be, says nothing of a joint from another
+    rig. The result's ``joint_source`` tells this, and what the log told that no scenario has a
+    place for; so do the warnings of its runs. Gains by pole placement are then designed for the
+    identified joint; gains that are given stay.
 
     Parameters
     ----------
@@ -51,6 +58,8 @@ def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path)
     >>> scenario = bk.lay_over(bk.load_scenario("paper_as_computed"), joint)
     >>> round(scenario.joint.coulomb_n), scenario.joint.stiction_n, round(scenario.part.mass_kg)
     (60, 450.0, 4)
+    >>> scenario.joint_source.residual
+    '2.73 % of the identified coulomb_n, as in paper_as_computed (9.81 N of 360 N): ...'
 
     """
     check_arguments(lay_over, locals(), ScenarioError)
@@ -71,20 +80,41 @@ def lay_file_over(scenario: Scenario, joint: JointFile, name: str) -> Scenario:
 
     """
     changes = joint.scenario_changes()
-    for path in changes:
-        table, field = path.split(".")
-        if field not in type(getattr(scenario, table)).model_fields:
-            raise ScenarioError(
-                f"{name}: sets {path}, which the scenario's law = {scenario.joint.law!r} does not "
-                f"have; give the scenario a joint with law = {_law_for(changes)!r}"
-            )
+    law = joint.joint.law or scenario.joint.law
+    numbers = {path.removeprefix("joint."): n for path, n in changes.items() if "joint." in path}
+    laws = laws_with(set(numbers))
+    if law not in laws:
+        lacking = next(one for one in numbers if law not in laws_with({one}))
+        raise ScenarioError(
+            f"{name}: sets joint.{lacking}, which the scenario's law = {law!r} does not have; give "
+            f"the scenario a joint with law = {laws[0]!r}"
+        )
+    left_n, because = _residual(scenario, joint.joint.coulomb_n)
+    source = JointSource(
+        log=joint.provenance.log,
+        residual=because,
+        dropped="; ".join(
+            f"{one} = {value:.5g} ({NO_PLACE[one]})" for one, value in joint.unplaced.items()
+        ),
+    )
     try:
-        return scenario.with_(changes)
+        return scenario.with_(
+            joint=values_under(law, scenario.joint, {**numbers, "residual_n": left_n}),
+            part={"mass_kg": changes.get("part.mass_kg", scenario.part.mass_kg)},
+            joint_source=source,
+        )
     except ScenarioError as error:
         raise ScenarioError(f"{name} laid over {scenario.name}: {error}") from None
 
 
-def _law_for(changes: dict[str, float]) -> str:
-    """Give the first law that has a place for all of a joint's numbers."""
-    numbers = {path.partition(".")[2] for path in changes if path.startswith("joint.")}
-    return laws_with(numbers)[0]
+def _residual(scenario: Scenario, coulomb_n: float) -> tuple[float, str]:
+    """Give the friction left at the end of the guide, in N, and why; nothing where it is stated."""
+    own = scenario.joint
+    if own.residual_n is not None:
+        return own.residual_n, ""
+    weight_n = residual_n(own, scenario.part.mass_kg)
+    share = weight_n / own.coulomb_n
+    return share * coulomb_n, (
+        f"{100 * share:.3g} % of the identified coulomb_n, as in {scenario.name} ({weight_n:.4g} N "
+        f"of {own.coulomb_n:.4g} N): a log does not tell it; joint.residual_n states it"
+    )

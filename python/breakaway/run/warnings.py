@@ -9,14 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.model.friction.passivity import passive_attraction_n_per_s, passive_speed
-from breakaway.model.scenario.controller import Gains, gain_sets
-from breakaway.model.scenario.joint import Gms
+from breakaway.model.scenario.controller import Gains, ReferenceController, gain_sets
+from breakaway.model.scenario.joint import AnyJoint, Gms
 from breakaway.model.scenario.scenario import Scenario
 
 if TYPE_CHECKING:
     from breakaway.run.finished import Outcome, RunMetrics
 
 Trace = Mapping[str, NDArray[np.float64]]
+
+STICTION_RATIO_MAX = 10.0
+"""Largest ratio of stiction to Coulomb friction that is not doubted."""
 
 REDRAWN_IN_TIME = (
     "disturbance: a factor that is redrawn by the clock breaks up what counts as one jump (one "
@@ -33,6 +36,10 @@ def warnings_of(
     """Say what is doubtful about a run of a resolved scenario, one sentence each."""
     if outcome == "diverged":
         yield from _diverged(scenario, metrics)
+    yield from _lost_of_the_log(scenario)
+    yield from _levels_do_not_fit(scenario.joint)
+    yield from _friction_rises(scenario.joint)
+    yield from _reference_does_not_fit(scenario)
     yield from _stuck_but_loose(scenario)
     yield from _negative_gains(scenario)
     yield from _bristles_push(scenario, trace)
@@ -56,6 +63,50 @@ def _diverged(scenario: Scenario, metrics: RunMetrics) -> Iterator[str]:
     if not force_n <= most_n:
         bound = f"limits.diverged_force_n = {most_n:.5g} N"
         yield f"{at}: peak force {force_n:.5g} N is above {bound}"
+
+
+def _lost_of_the_log(scenario: Scenario) -> Iterator[str]:
+    source = scenario.joint_source
+    if source is not None and source.dropped:
+        yield f"joint_source: of the joint of {source.log} the run leaves out {source.dropped}"
+
+
+def _levels_do_not_fit(joint: AnyJoint) -> Iterator[str]:
+    hold_n, slide_n = joint.stiction_n, joint.coulomb_n
+    levels = f"joint.stiction_n = {hold_n:.5g} N is {{}} joint.coulomb_n = {slide_n:.5g} N"
+    if hold_n < slide_n:
+        yield f"{levels.format('below')}: the joint slides at more than breaks it loose; give more"
+    elif hold_n > STICTION_RATIO_MAX * slide_n:
+        yield (
+            f"{levels.format('more than ten times')}: joints have 1 to 4 times; give both of the "
+            "same joint"
+        )
+
+
+def _friction_rises(joint: AnyJoint) -> Iterator[str]:
+    left_n = joint.residual_n
+    if left_n is not None and left_n > joint.coulomb_n:
+        yield (
+            f"joint.residual_n = {left_n:.5g} N is above joint.coulomb_n = {joint.coulomb_n:.5g} "
+            "N: friction rises along the guide; left out it is the weight, give at most coulomb_n"
+        )
+
+
+def _reference_does_not_fit(scenario: Scenario) -> Iterator[str]:
+    reference, length_m = scenario.reference, scenario.joint.engagement_length_m
+    if not isinstance(scenario.controller, ReferenceController):
+        return
+    if reference.distance_m > 2 * length_m:
+        yield (
+            f"reference.distance_m = {reference.distance_m:.5g} m is more than twice "
+            f"joint.engagement_length_m = {length_m:.5g} m, where the part is free, so it is "
+            f"pulled faster than over its guide alone; give about {length_m:.5g}"
+        )
+    if reference.start_s >= scenario.timing.duration_s:
+        yield (
+            f"reference.start_s = {reference.start_s:.5g} s is not before the end of the run at "
+            f"timing.duration_s = {scenario.timing.duration_s:.5g} s: nothing is pulled"
+        )
 
 
 def _stuck_but_loose(scenario: Scenario) -> Iterator[str]:

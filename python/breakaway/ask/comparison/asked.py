@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 import tomli_w
 from pydantic import Field, model_validator
 
+from breakaway.ask.comparison.training import refuse_training_parts
 from breakaway.ask.studies.base import StudyModel
 from breakaway.base.arguments import run_numbers
 from breakaway.base.reading import read_toml
@@ -60,6 +61,8 @@ class Asked(StudyModel):
     """Seed of parts, disturbances and noise."""
     baselines: list[Name] = Field(default_factory=list)
     """Names of the methods whose best one the others are measured against. Left out: all."""
+    allow_training_parts: bool = False
+    """Whether a method may be compared on parts that it was tuned on."""
     runs_per_piece: Annotated[int, Field(ge=1)] = 5000
     """Parts of the population in one piece: many fill the processor's lanes, few lose less work."""
 
@@ -78,6 +81,8 @@ class Asked(StudyModel):
         for name in self.baselines:
             if name not in names:
                 raise ValueError(f"baselines: {name!r} is not one of {', '.join(names)}")
+        if not self.allow_training_parts:
+            refuse_training_parts(self.methods, self.seed, self.numbers)
         return self
 
     @property
@@ -110,6 +115,7 @@ def ask(
     runs: int | range | None = None,
     seed: int | None = None,
     baselines: Sequence[str] | str | None = None,
+    allow_training_parts: bool | None = None,
 ) -> Asked:
     """Put a comparison together from names, files and objects.
 
@@ -130,7 +136,8 @@ def ask(
         "variations": _listed(variations),
         "baselines": _listed(baselines),
     }
-    given = {**_counted(runs), "seed": seed, **lists}
+    allowed = {"allow_training_parts": allow_training_parts}
+    given = {**_counted(runs), "seed": seed, **lists, **allowed}
     values: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     for name, known in (("laws", LAWS), ("variations", VARIATIONS)):
         _check_known(name, lists[name] or (), known)

@@ -126,6 +126,7 @@ def compare_methods(
     runs: int | range | None = None,
     seed: int | None = None,
     baselines: Sequence[str] | str | None = None,
+    allow_training_parts: bool | None = None,
     out: str | Path | None = None,
     resume: bool = False,
     threads: int | None = None,
@@ -162,6 +163,9 @@ def compare_methods(
     baselines : sequence of str, optional
         Names of the methods whose best one all others are measured against. Left out: each method
         is measured against the best of all others.
+    allow_training_parts : bool, optional
+        Whether a method may be compared on parts that it was tuned on (its ``tuned_on``), which
+        the result then says first. Left out: such a comparison is refused.
     out : str or Path, optional
         The folder; made if it is missing. Left out: nothing is written.
     resume : bool, optional
@@ -181,8 +185,8 @@ def compare_methods(
     Raises
     ------
     StudyError
-        A law, a variation or a number is not valid, or the folder holds another comparison; nothing
-        has run.
+        A law, a variation or a number is not valid, a method was tuned on some of the parts, or the
+        folder holds another comparison; nothing has run.
     ScenarioError
         There is no such population or method, or it is not valid.
     OutputError
@@ -208,6 +212,7 @@ def compare_methods(
         runs=runs,
         seed=seed,
         baselines=baselines,
+        allow_training_parts=allow_training_parts,
     )
     folder = None if out is None else Path(out)
     with _held(folder, asked, resume=resume) as journal:

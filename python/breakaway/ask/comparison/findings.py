@@ -8,6 +8,7 @@ from itertools import combinations
 from breakaway.ask.comparison.asked import Asked
 from breakaway.ask.comparison.case_words import cases_in_words, listing
 from breakaway.ask.comparison.table import CRITERIA, Trials, case_of, paired, rank
+from breakaway.ask.comparison.training import training_sentences
 from breakaway.ask.studies.plan import Row
 from breakaway.model.scenario.variation import VARIATIONS
 from breakaway.run.trials import Case
@@ -32,6 +33,7 @@ Leaders = dict[Case, tuple[str, ...]]
 def sentences_of(asked: Asked, trials: Trials, rows: Sequence[Row]) -> list[str]:
     """Say what was found: the gentlest, why the others fail, and what depends on the case."""
     return [
+        *training_sentences(asked.methods, asked.seed, asked.numbers),
         *_leading(asked, trials, rows, "gentle"),
         *_leading(asked, trials, rows, "strict"),
         *_changing(asked, trials),

@@ -94,7 +94,8 @@ class RobustnessTable(LevelsTable):
 
     over: Name
     """The number whose largest survived level is searched for, by dotted path, such as
-    "disturbance.var"; or "part_scale", which multiplies the spread of everything in vary."""
+    "disturbance.var"; or "part_scale", which multiplies the spread of everything in vary, within
+    its low and high."""
     failure: list[Failure] = Field(default_factory=lambda: list(FAILURES), min_length=1)
     """Outcomes that count as failure."""
     failure_probability_max: Share
@@ -153,9 +154,17 @@ class RobustnessStudy(StudyBase):
                 raise StudyError(
                     "robustness.over: is 'part_scale', but vary is empty; give distributions"
                 )
+            self._refuse_to_leave_ranges()
         else:
             self._refuse_levels_that_are_none()
         return self
+
+    def _refuse_to_leave_ranges(self) -> None:
+        for path, law in self.vary.items():
+            try:
+                law.scaled(self.robustness.high)
+            except ScenarioError as error:
+                raise StudyError(f"robustness.high: vary.{path}: {error}") from None
 
     def _refuse_levels_that_are_none(self) -> None:
         asked, path = self.robustness, self.robustness.over

@@ -288,6 +288,13 @@ def _check_parts(tuning: Tuning) -> None:
             f"parts {unseen.start} to {last} would be tuned on and called unseen; give a first "
             f"part >= {tuning.training_runs}"
         )
+    known = tuning.method.tuned_among(tuning.seed, unseen)
+    if known is not None:
+        raise StudyError(
+            f"test_runs.first: {unseen.start} takes parts {known.start} to {known.stop - 1}, which "
+            f"the method {tuning.method.name!r} was tuned on; give the numbers of parts that it "
+            "never saw"
+        )
 
 
 def _check_scores(tuning: Tuning) -> None:

@@ -11,11 +11,12 @@ from breakaway.ask.durable.documents import as_csv, as_json
 from breakaway.ask.durable.finished import SUMMARY
 from breakaway.ask.durable.journal import PIECES, Journal
 from breakaway.ask.tuning.evaluation import Evaluation
+from breakaway.ask.tuning.problem import Tuning
 from breakaway.ask.tuning.summary import Found, Row, content_of, evaluation_rows, pareto_rows
 from breakaway.base.output import output_folder
 from breakaway.base.ownership import STUDY
 from breakaway.base.text import toml_comment
-from breakaway.model.scenario.method import Method
+from breakaway.model.scenario.method import Method, TrainingParts
 from breakaway.model.scenario.variation import VARIATION_WORDS
 
 EVALUATIONS, UNSEEN = RECORDS = (f"{PIECES}/evaluations.jsonl", f"{PIECES}/unseen.jsonl")
@@ -68,9 +69,22 @@ def method_toml(found: Found, evaluation: Evaluation, file: str) -> str:
             for name in tuning.objectives
         ),
     ]
-    named = Method.parse(method.model_dump() | {"name": f"{method.name}_tuned{place}"})
+    tuned = {
+        "name": f"{method.name}_tuned{place}",
+        "tuned_on": [*method.tuned_on, _training_parts(tuning)],
+    }
+    named = Method.parse(method.model_copy(update=tuned).model_dump())
     values = {key: v for key, v in named.model_dump(exclude_none=True).items() if v != {}}
     return "\n".join(said) + "\n\n" + tomli_w.dumps(values)
+
+
+def _training_parts(tuning: Tuning) -> TrainingParts:
+    return TrainingParts(
+        population=tuning.population.name,
+        seed=tuning.seed,
+        first=tuning.training.start,
+        runs=len(tuning.training),
+    )
 
 
 def _draw(found: Found, staging: Path, content: Row) -> None:

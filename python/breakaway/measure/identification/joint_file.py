@@ -22,10 +22,20 @@ from breakaway.measure.identification.verdicts import stiction_peak
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.distribution import Samples
 from breakaway.model.scenario.files import parse_toml
+from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.model import Model, Name, NotNegative, Positive, Text
 
 DRAWS = 200
 """Joints that a file holds."""
+
+NO_PLACE = {
+    "viscous_negative_n_s_per_m": "viscous friction of a scenario is the same in both directions, "
+    "as in the positive one here",
+    "coulomb_slope_n_per_m": "levels of a scenario fall to joint.residual_n at the end of its "
+    "guide, and where in the guide the log was recorded is not known",
+    "spring_n_per_m": "a scenario has no spring beside the joint",
+}
+"""What a log can tell of a joint and no scenario has a place for, with the reason."""
 
 METHOD = "IDIM least squares (Janot, Gautier, Brunot 2019)"
 
@@ -75,14 +85,22 @@ class Part(Model):
 
 
 class Joint(Model):
-    """What the log tells of the joint; where directions differ, of the positive one."""
+    """What the log tells of the joint; where directions differ, of the positive one.
 
+    ``law`` is the friction law of a scenario that the fit was made with. It is absent where the fit
+    says nothing of how a stuck joint yields. ``backward_ratio`` is the level of the negative
+    direction over that of the positive one.
+    """
+
+    law: Law | None = None
     coulomb_n: NotNegative
     viscous_n_s_per_m: NotNegative | None = None
     stiction_n: Positive | None = None
     stiffness_n_per_m: Positive | None = None
     damping_n_s_per_m: NotNegative | None = None
     stribeck_velocity_m_per_s: Positive | None = None
+    elastic_share: Annotated[float, Field(ge=0.0, lt=1.0)] | None = None
+    backward_ratio: Positive | None = None
 
 
 class Rig(Model):
@@ -130,7 +148,8 @@ class JointFile(Model):
     """An identified joint, as it is kept in ``joint.toml``.
 
     Units are in the keys. ``not_identified`` maps a field of a scenario to the reason why the
-    log does not tell it: such a field keeps the scenario's own value.
+    log does not tell it: such a field keeps the scenario's own value. ``unplaced`` holds what the
+    log tells of the joint and no scenario has a place for; `dropped` says why.
 
     Examples
     --------
@@ -156,6 +175,7 @@ class JointFile(Model):
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
     not_identified: dict[str, Text]
+    unplaced: dict[str, float] = Field(default_factory=dict)
     draws: Annotated[Draws | None, Field(repr=False)] = None
 
     @classmethod
@@ -256,7 +276,7 @@ class JointFile(Model):
         drawn = posterior.samples if posterior is not None else found.draws(DRAWS, seed=seed)
         fields = _fields_of(found.values, told)
         columns = _fields_of({name: one[_thinned(one)] for name, one in drawn.items()}, told)
-        changes: dict[str, dict[str, float]] = {"part": {}, "joint": {}}
+        changes: dict[str, dict[str, Any]] = {"part": {}, "joint": {"law": _law_of(found)}}
         for path, value in fields.items():
             table, name = path.split(".")
             changes[table][name] = value
@@ -270,6 +290,7 @@ class JointFile(Model):
             },
             interval={one.name: [one.low, one.high] for one in found.estimates if one.identifiable},
             not_identified=_not_identified(found, fields),
+            unplaced={name: found.values[name] for name in NO_PLACE if name in told},
             draws=Draws(
                 source="normal" if posterior is None else "posterior",
                 seed=seed,
@@ -284,7 +305,18 @@ class JointFile(Model):
             f"{table}.{name}": value
             for table, model in tables.items()
             for name, value in model
-            if value is not None
+            if value is not None and name != "law"
+        }
+
+    def dropped(self) -> dict[str, tuple[float, str]]:
+        """Return what no scenario has a place for: each value, and why it has none."""
+        each = self.asymmetric
+        by_direction = {} if each is None else each.model_dump(exclude={"standard_error"})
+        other = "of a second fit, with friction by direction and no offset; the first is used"
+        return {
+            **{name: (value, NO_PLACE[name]) for name, value in self.unplaced.items()},
+            **{f"asymmetric.{name}": (value, other) for name, value in by_direction.items()},
+            "rig.offset_n": (self.rig.offset_n, "belongs to the rig, not to the joint"),
         }
 
     def vary(self) -> dict[str, Samples]:
@@ -358,9 +390,16 @@ def _fields_of(values: Mapping[str, Any], told: set[str]) -> dict[str, Any]:
         fields["joint.viscous_n_s_per_m"] = values[viscous]
     if "stiction_ratio" in told:
         fields["joint.stiction_n"] = values["stiction_ratio"] * coulomb
-    for name in ("stribeck_velocity_m_per_s", "stiffness_n_per_m", "damping_n_s_per_m"):
+    for name in (
+        "stribeck_velocity_m_per_s",
+        "stiffness_n_per_m",
+        "damping_n_s_per_m",
+        "elastic_share",
+    ):
         if name in told:
             fields[f"joint.{name}"] = values[name]
+    if "coulomb_negative_n" in told:
+        fields["joint.backward_ratio"] = values["coulomb_negative_n"] / coulomb
     if "mass_kg" in told:
         fields["part.mass_kg"] = values["mass_kg"]
     return fields
@@ -385,6 +424,15 @@ def _thinned(column: Array) -> slice:
     return slice(None, None, max(1, len(column) // DRAWS))
 
 
+def _law_of(found: Identification) -> Law | None:
+    """Return the law of a scenario that a fit was made with; one without a bristle tells none."""
+    return found.law.name if found.law.has_bristle else None
+
+
+_IN_THE_FIT = {"stiction_n": "stiction_ratio", "backward_ratio": "coulomb_negative_n"}
+"""Field of a scenario -> the parameter of a fit that tells it, where their names differ."""
+
+
 def _not_identified(found: Identification, fields: Mapping[str, float]) -> dict[str, str]:
     reasons = {one.parameter: one.because for one in found.verdicts if not one.identifiable}
     out = {}
@@ -394,11 +442,13 @@ def _not_identified(found: Identification, fields: Mapping[str, float]) -> dict[
         "joint.stiffness_n_per_m",
         "joint.damping_n_s_per_m",
         "joint.stribeck_velocity_m_per_s",
+        *(["joint.elastic_share"] if found.law.elasto_plastic else []),
+        *(["joint.backward_ratio"] if found.law.asymmetric else []),
         "part.mass_kg",
     ):
         if field not in fields:
             name = field.split(".")[1]
-            keys = ("stiction_ratio" if name == "stiction_n" else name, _sided(name))
+            keys = (_IN_THE_FIT.get(name, name), _sided(name))
             why = next((reasons[key] for key in keys if key in reasons), "it was held in the fit")
             out[field] = why
     out["joint.engagement_length_m"] = "the length of the guide is known from the drawing"

@@ -6,7 +6,20 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from breakaway.model.scenario.model import Model, NotNegative, Positive
+from breakaway.model.scenario.magnitudes import (
+    Acceleration,
+    Damping,
+    Force,
+    ForceOrZero,
+    ForceRate,
+    Frequency,
+    Length,
+    LengthOrZero,
+    Mass,
+    Speed,
+    Stiffness,
+)
+from breakaway.model.scenario.model import Model
 
 
 class IdealActuator(Model):
@@ -21,7 +34,7 @@ class PushOnlyActuator(Model):
 
     kind: Literal["push_only"] = "push_only"
     """The kind of actuator."""
-    force_max_n: Positive
+    force_max_n: Force
     """Largest force, in N."""
 
 
@@ -40,11 +53,11 @@ class ForceActuator(Model):
 
     kind: Literal["force"] = "force"
     """The kind of actuator."""
-    force_max_n: Positive
+    force_max_n: Force
     """Largest force, in N."""
-    bandwidth_hz: Positive
+    bandwidth_hz: Frequency
     """Frequency at which the force is 3 dB down, in Hz."""
-    force_rate_max_n_per_s: Positive
+    force_rate_max_n_per_s: ForceRate
     """Largest rate of the force, in N/s."""
 
 
@@ -63,13 +76,13 @@ class Contact(Model):
 
     """
 
-    stiffness_n_per_m: Positive
+    stiffness_n_per_m: Stiffness
     """Stiffness of a face, in N/m."""
-    damping_n_s_per_m: NotNegative
+    damping_n_s_per_m: Damping
     """Damping of a face, in N s/m."""
-    gap_m: NotNegative = 0.0
+    gap_m: LengthOrZero = 0.0
     """Distance of the tip from the part at the start, in m; in a grip at most backlash_m."""
-    backlash_m: NotNegative | None = None
+    backlash_m: LengthOrZero | None = None
     """Play of a grip, in m: the tip pulls once the part is ahead of it by more than this. 0: it
     holds both ways without play. Left out: it only pushes."""
 
@@ -101,27 +114,27 @@ class Piezo(Model):
 
     kind: Literal["piezo"] = "piezo"
     """The kind of tip."""
-    stroke_m: Positive
+    stroke_m: Length
     """Free stroke at the full voltage, in m."""
-    stiffness_n_per_m: Positive
+    stiffness_n_per_m: Stiffness
     """Stiffness of stack and preload spring, in N/m."""
-    tip_mass_kg: Positive
+    tip_mass_kg: Mass
     """Effective mass at the tip, which gives the first resonance, in kg."""
-    damping_n_s_per_m: NotNegative
+    damping_n_s_per_m: Damping
     """Damping of the stack, in N s/m."""
     hysteresis_share: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
     """Share of the stroke that lags; 0 for none."""
-    preload_n: NotNegative
+    preload_n: ForceOrZero
     """Preload of the relaxed stack, in N: the tension that it can bear before it is stretched."""
-    capacitance_f: Positive
+    capacitance_f: Annotated[float, Field(gt=0.0, le=1.0)]
     """Capacitance at large signals, in F."""
-    loss_tangent: NotNegative = 0.0
+    loss_tangent: Annotated[float, Field(ge=0.0, le=10.0)] = 0.0
     """Dielectric loss at 1 kHz; it heats the stack and does not act on the motion."""
-    voltage_max_v: Positive
+    voltage_max_v: Annotated[float, Field(gt=0.0, le=1e6)]
     """Full voltage, in V."""
-    current_max_a: Positive
+    current_max_a: Annotated[float, Field(gt=0.0, le=1e6)]
     """Largest current of the amplifier, in A; with the capacitance it limits the slew."""
-    amplifier_bandwidth_hz: Positive
+    amplifier_bandwidth_hz: Frequency
     """Bandwidth of the amplifier on this load, in Hz."""
 
 
@@ -145,15 +158,15 @@ class FeedAxis(Model):
 
     kind: Literal["feed_axis"] = "feed_axis"
     """The kind of actuator."""
-    speed_max_m_per_s: Positive
+    speed_max_m_per_s: Speed
     """Largest speed of the drive, in m/s."""
-    acceleration_max_m_per_s2: Positive
+    acceleration_max_m_per_s2: Acceleration
     """Largest acceleration of the drive, in m/s^2."""
-    stiffness_n_per_m: Positive
+    stiffness_n_per_m: Stiffness
     """Stiffness of the axis between drive and tool, in N/m."""
-    damping_n_s_per_m: NotNegative
+    damping_n_s_per_m: Damping
     """Damping of the axis, in N s/m."""
-    tool_mass_kg: Positive
+    tool_mass_kg: Mass
     """Mass of the tool, in kg."""
     tip: Annotated[RigidTip | Piezo, Field(discriminator="kind")] = RigidTip()
     """What touches the part."""

@@ -56,10 +56,16 @@ class Uniform(Model):
         Parameters
         ----------
         factor : float
-            1 for no change, 0 for no spread.
+            1 for no change, 0 for no spread; at most 1, because the law fills its range.
+
+        Raises
+        ------
+        ScenarioError
+            The factor is above 1.
 
         """
         check_arguments(Uniform.scaled, locals(), ScenarioError)
+        factor = _not_wider(self.distribution, "normal", factor)
         center, half = 0.5 * (self.low + self.high), 0.5 * (self.high - self.low)
         return Uniform(low=center - factor * half, high=center + factor * half)
 
@@ -104,10 +110,16 @@ class LogUniform(Model):
         Parameters
         ----------
         factor : float
-            1 for no change, 0 for no spread.
+            1 for no change, 0 for no spread; at most 1, because the law fills its range.
+
+        Raises
+        ------
+        ScenarioError
+            The factor is above 1.
 
         """
         check_arguments(LogUniform.scaled, locals(), ScenarioError)
+        factor = _not_wider(self.distribution, "log_normal", factor)
         center, half = (self.low * self.high) ** 0.5, (self.high / self.low) ** (0.5 * factor)
         return LogUniform(low=center / half, high=center * half)
 
@@ -153,18 +165,20 @@ class Normal(Model):
         from scipy.special import ndtr, ndtri
 
         if self.std == 0.0:
-            return np.full_like(u, self.mean)
+            return _within(np.full_like(u, self.mean), self.low, self.high)
         low = -np.inf if self.low is None else (self.low - self.mean) / self.std
         high = np.inf if self.high is None else (self.high - self.mean) / self.std
         side = 1.0
         if low >= 0.0:  # an upper tail is computed as the lower one, where small shares are exact
             low, high, u, side = -high, -low, 1.0 - u, -1.0
+        if ndtr(high) == 0.0:  # so far from the mean that all values are at the nearer bound
+            return _within(np.full_like(u, self.mean), self.low, self.high)
         share = (1.0 - u) * ndtr(low) + u * ndtr(high)
         values = self.mean + side * self.std * np.asarray(ndtri(share))
         return _within(values, self.low, self.high)
 
     def scaled(self, factor: float) -> Normal:
-        """Give the distribution with its standard deviation and bounds stretched about its mean.
+        """Give the distribution with its standard deviation multiplied; its bounds stay.
 
         Parameters
         ----------
@@ -173,12 +187,7 @@ class Normal(Model):
 
         """
         check_arguments(Normal.scaled, locals(), ScenarioError)
-        return Normal(
-            mean=self.mean,
-            std=factor * self.std,
-            low=None if self.low is None else self.mean + factor * (self.low - self.mean),
-            high=None if self.high is None else self.mean + factor * (self.high - self.mean),
-        )
+        return Normal(mean=self.mean, std=factor * self.std, low=self.low, high=self.high)
 
 
 class LogNormal(Model):
@@ -226,7 +235,7 @@ class LogNormal(Model):
         return _within(self.median * np.exp(normal.quantile(u)), self.low, self.high)
 
     def scaled(self, factor: float) -> LogNormal:
-        """Give the distribution with its width in the logarithm multiplied, about its median.
+        """Give the distribution with its width in the logarithm multiplied; its bounds stay.
 
         Parameters
         ----------
@@ -235,16 +244,8 @@ class LogNormal(Model):
 
         """
         check_arguments(LogNormal.scaled, locals(), ScenarioError)
-
-        def stretched(bound: float | None) -> float | None:
-            return None if bound is None else self.median * (bound / self.median) ** factor
-
-        return LogNormal(
-            median=self.median,
-            sigma=factor * self.sigma,
-            low=stretched(self.low),
-            high=stretched(self.high),
-        )
+        sigma = factor * self.sigma
+        return LogNormal(median=self.median, sigma=sigma, low=self.low, high=self.high)
 
 
 class Samples(Model):
@@ -281,7 +282,10 @@ class Samples(Model):
         return np.asarray(self.values)[place]
 
     def scaled(self, factor: float) -> Samples:
-        """Give the table with every value moved from or to the mean.
+        """Give the table with every value moved from or to its center.
+
+        Where all values are above 0, so are the moved ones: they move in the logarithm, about the
+        geometric mean; else about the mean.
 
         Parameters
         ----------
@@ -291,8 +295,12 @@ class Samples(Model):
         """
         check_arguments(Samples.scaled, locals(), ScenarioError)
         values = np.asarray(self.values)
-        center = float(values.mean())
-        moved = center + factor * (values - center)
+        if (values > 0.0).all():
+            center = np.exp(np.log(values).mean())
+            moved = center * (values / center) ** factor
+        else:
+            center = values.mean()
+            moved = center + factor * (values - center)
         return Samples(values=tuple(moved.tolist()), rows=self.rows)
 
 
@@ -305,6 +313,16 @@ def _ordered(model: AnyModel, low: float | None, high: float | None) -> AnyModel
     if low is not None and high is not None and low > high:
         raise ValueError(f"low: {low!r} is not <= high = {high!r}; swap them")
     return model
+
+
+def _not_wider(law: str, other: str, factor: float) -> float:
+    """Give a factor for the width of a law that fills its range, but for rounding at most 1."""
+    if factor > 1.0 + 1e-9:
+        raise ScenarioError(
+            f"factor: {factor!r} is not <= 1, because the distribution {law!r} fills its range; "
+            f"give at most 1, or the distribution {other!r} with the same low and high"
+        )
+    return min(factor, 1.0)
 
 
 def _within(values: Array, low: float | None, high: float | None) -> Array:

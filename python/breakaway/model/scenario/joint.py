@@ -6,7 +6,16 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from breakaway.model.scenario.model import Model, NotNegative, Positive
+from breakaway.model.scenario.magnitudes import (
+    Damping,
+    Force,
+    ForceRate,
+    Length,
+    Mass,
+    Speed,
+    Stiffness,
+)
+from breakaway.model.scenario.model import Model, Positive
 from breakaway.model.scenario.normal_force import Drift, NormalForce
 
 ELEMENTS_MAX = 10
@@ -19,9 +28,9 @@ Shares = Annotated[tuple[Positive, ...], Field(strict=False)]
 class _Levels(Model):
     """The friction levels at the seat."""
 
-    stiction_n: Positive
+    stiction_n: Force
     """F_s0, the force that breaks the joint loose at the seat, in N."""
-    coulomb_n: Positive
+    coulomb_n: Force
     """F_c0, the friction force while sliding at the seat, in N."""
 
 
@@ -30,9 +39,9 @@ class _Bristle(Model):
 
     one_bristle: ClassVar[bool] = True
     """Whether the joint yields by one bristle, which is all that Runge-Kutta steps."""
-    stiffness_n_per_m: Positive
+    stiffness_n_per_m: Stiffness
     """k_e, stiffness of the bristles, in N/m."""
-    damping_n_s_per_m: NotNegative
+    damping_n_s_per_m: Damping
     """c, damping of the bristles, in N s/m."""
 
 
@@ -51,11 +60,11 @@ class _Varying(Model):
 class _Guide(Model):
     """How the levels change along the guide and with the direction."""
 
-    engagement_length_m: Positive
+    engagement_length_m: Length
     """l_f, travel after which the part is out of its guide, in m."""
-    residual_n: Positive | None = None
+    residual_n: Force | None = None
     """Friction left at the end of the guide, in N. Left out: the weight m g, as in the paper."""
-    backward_ratio: Positive | None = None
+    backward_ratio: Annotated[float, Field(gt=0.0, le=1e3)] | None = None
     """Factor on all friction levels for backward motion. Left out: 1."""
 
 
@@ -67,11 +76,11 @@ class SeizedJoint(_Varying, _Guide, _Bristle, _Levels):
 class StribeckJoint(SeizedJoint):
     """What the laws have whose friction falls with speed: LuGre and its relatives."""
 
-    viscous_n_s_per_m: NotNegative = 0.0
+    viscous_n_s_per_m: Damping = 0.0
     """Viscous friction sigma_2, in N s/m."""
-    stribeck_velocity_m_per_s: Positive
+    stribeck_velocity_m_per_s: Speed
     """v_s, the velocity over which friction falls from stiction to Coulomb, in m/s."""
-    damping_velocity_m_per_s: Positive | None = None
+    damping_velocity_m_per_s: Speed | None = None
     """v_d, in m/s: damping of the bristles falls with speed as exp(-(v/v_d)**2). Left out: it is
     constant, and at speeds beyond 4 g / c a bristle may push the part."""
 
@@ -146,7 +155,7 @@ class Gms(StribeckJoint):
     """The friction law."""
     elements: Annotated[int, Field(ge=4, le=ELEMENTS_MAX)] = 6
     """Number of elements."""
-    attraction_n_per_s: Positive
+    attraction_n_per_s: ForceRate
     """C, in N/s: the force of a slipping element follows its level with the time constant g / C."""
     stiffness_shares: Shares | None = None
     """Share of each element in stiffness and damping; they add up to 1. Left out: equal."""
@@ -223,9 +232,9 @@ class CoulombStiction(_Varying, _Guide, _Levels):
     one_bristle: ClassVar[bool] = False
     law: Literal["coulomb_stiction"] = "coulomb_stiction"
     """The friction law."""
-    viscous_n_s_per_m: NotNegative = 0.0
+    viscous_n_s_per_m: Damping = 0.0
     """Viscous friction sigma_2, in N s/m."""
-    stribeck_velocity_m_per_s: Positive
+    stribeck_velocity_m_per_s: Speed
     """v_s, the velocity over which friction falls from stiction to Coulomb, in m/s."""
 
     @model_validator(mode="after")
@@ -260,5 +269,5 @@ AnyJoint = Lugre | ElastoPlastic | Gms | TwoRegion | CoulombStiction
 class Part(Model):
     """The part that is extracted."""
 
-    mass_kg: Positive
+    mass_kg: Mass
     """m, in kg."""

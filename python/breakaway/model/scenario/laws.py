@@ -167,13 +167,18 @@ def joint_under(law: Law, joint: AnyJoint, numbers: Mapping[str, Any]) -> AnyJoi
     breakaway.errors.ScenarioError: elements: 2 is not >= 4; give ...
 
     """
+    return _MODELS[law](**values_under(law, joint, numbers))
+
+
+def values_under(law: Law, joint: AnyJoint, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """Give the values of a joint under another law, as `joint_under` makes them, unchecked."""
     model, usual = _MODELS[law], LawNumbers()
     entry = _ENTRIES[model]
     own = entry.shared(usual) | entry.of_part(usual, joint.stiction_n)
     needed = {name: own[name] for name in own if model.model_fields[name].is_required()}
     known = joint.model_dump(exclude_none=True)
-    kept = {name: known[name] for name in model.model_fields if name in known and name != "law"}
-    return model(**{**needed, **kept, **numbers})
+    kept = {name: known[name] for name in model.model_fields if name in known}
+    return {**needed, **kept, **numbers, "law": law}
 
 
 def laws_with(names: Mapping[str, Any] | set[str]) -> list[Law]:

@@ -48,6 +48,31 @@ Known = Annotated[
 ]
 
 
+class TrainingParts(Model):
+    """Parts that the numbers of a method were chosen on.
+
+    Examples
+    --------
+    >>> TrainingParts(population="seized_parts", seed=0, first=0, runs=256).numbers
+    range(0, 256)
+
+    """
+
+    population: Name
+    """Name of the population."""
+    seed: Annotated[int, Field(ge=0, lt=2**63)]
+    """Seed that they were drawn by."""
+    first: Annotated[int, Field(ge=0, lt=2**62)]
+    """Number of the first of them."""
+    runs: Annotated[int, Field(ge=1, lt=2**62)]
+    """How many they are."""
+
+    @property
+    def numbers(self) -> range:
+        """Numbers of all of them."""
+        return range(self.first, self.first + self.runs)
+
+
 class Method(Model):
     """A way to free parts: what pushes, what decides, and what it knows of each part.
 
@@ -73,6 +98,39 @@ class Method(Model):
     knows: dict[str, Known] = Field(default_factory=dict)
     """Numbers that follow the length of engagement of each part, or a multiple of it, by dotted
     path, such as ``controller.travel_m``; everything else is the same for all parts."""
+    tuned_on: list[TrainingParts] = Field(default_factory=list)
+    """Parts that its numbers were chosen on, which a tuning notes. Left out: none."""
+
+    def tuned_among(self, seed: int, numbers: range) -> range | None:
+        """Give the first parts among some that its numbers were chosen on; None if there are none.
+
+        Parts of the same seed and number come from the same random numbers, whatever their
+        population is.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of the parts.
+        numbers : range
+            Their numbers, consecutive.
+
+        Examples
+        --------
+        >>> import breakaway as bk
+        >>> feed = bk.load_method("steady_feed")
+        >>> parts = TrainingParts(population="seized_parts", seed=0, first=0, runs=256)
+        >>> tuned = feed.model_copy(update={"tuned_on": [parts]})
+        >>> tuned.tuned_among(0, range(200, 1000)), tuned.tuned_among(1, range(1000))
+        (range(200, 256), None)
+
+        """
+        check_arguments(Method.tuned_among, locals(), ScenarioError)
+        for parts in self.tuned_on:
+            start = max(parts.first, numbers.start)
+            stop = min(parts.numbers.stop, numbers.stop)
+            if parts.seed == seed and start < stop:
+                return range(start, stop)
+        return None
 
     def told(self, engagement_length_m: Array) -> dict[str, Array]:
         """Give the numbers that each part sets.

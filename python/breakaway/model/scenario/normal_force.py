@@ -9,7 +9,15 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from breakaway.model.scenario.model import Model, NotNegative, Positive
+from breakaway.model.scenario.magnitudes import (
+    DurationOrZero,
+    Force,
+    ForceOrZero,
+    Frequency,
+    LengthOrZero,
+    Stiffness,
+)
+from breakaway.model.scenario.model import Model
 
 POINTS_MAX = 8
 """The most points of a course: as many as the core has room for."""
@@ -18,18 +26,22 @@ STEPS_PER_CYCLE = 20
 
 Points = Annotated[tuple[float, ...], Field(strict=False, max_length=POINTS_MAX)]
 """Numbers of a course; TOML has lists, which a strict tuple would refuse."""
-PositivePoints = Annotated[tuple[Positive, ...], Field(strict=False, max_length=POINTS_MAX)]
-NotNegativePoints = Annotated[tuple[NotNegative, ...], Field(strict=False, max_length=POINTS_MAX)]
+Factors = Annotated[
+    tuple[Annotated[float, Field(gt=0.0, le=1e3)], ...],
+    Field(strict=False, max_length=POINTS_MAX),
+]
+Times = Annotated[tuple[DurationOrZero, ...], Field(strict=False, max_length=POINTS_MAX)]
+Forces = Annotated[tuple[ForceOrZero, ...], Field(strict=False, max_length=POINTS_MAX)]
 
 
 class NormalVibration(Model):
     """Vibration normal to the joint: N + k a sin(2 pi (f t + phase)), k the contact's stiffness."""
 
-    amplitude_m: NotNegative
+    amplitude_m: LengthOrZero
     """How far the bodies approach and part, from their mean, in m."""
-    stiffness_n_per_m: Positive
+    stiffness_n_per_m: Stiffness
     """Stiffness of the contact normal to the joint, in N/m."""
-    frequency_hz: Positive
+    frequency_hz: Frequency
     """Frequency, in Hz; a cycle takes 20 integration steps or more."""
     phase_turns: float = 0.0
     """Phase at the start, in turns."""
@@ -42,9 +54,9 @@ class TransverseVibration(Model):
     a bristle in the plane: lugre and elasto_plastic.
     """
 
-    amplitude_m: NotNegative
+    amplitude_m: LengthOrZero
     """How far the part is moved across, from its mean, in m."""
-    frequency_hz: Positive
+    frequency_hz: Frequency
     """Frequency, in Hz; a cycle takes 20 integration steps or more."""
     phase_turns: float = 0.0
     """Phase at the start, in turns."""
@@ -94,9 +106,9 @@ class DriftOverTime(Model):
 
     kind: Literal["over_time"] = "over_time"
     """What the factor follows."""
-    time_s: NotNegativePoints
+    time_s: Times
     """Times of its points since the start, rising, in s."""
-    factor: PositivePoints
+    factor: Factors
     """The factor at each point."""
 
     @model_validator(mode="after")
@@ -125,7 +137,7 @@ class DriftOverTravel(Model):
     """What the factor follows."""
     travel_m: Points
     """Places of its points, the part's travel from its seat, rising, in m."""
-    factor: PositivePoints
+    factor: Factors
     """The factor at each point."""
 
     @model_validator(mode="after")
@@ -145,7 +157,7 @@ Drift = Annotated[DriftOverTime | DriftOverTravel, Field(discriminator="kind")]
 class _NormalForce(Model):
     """What every source of a normal force has."""
 
-    nominal_n: Positive | None = None
+    nominal_n: Force | None = None
     """Normal force at which the joint's levels hold, in N: a level over it is a coefficient of
     friction. Left out: the force at the start, without vibration."""
     vibration: NormalVibration | None = None
@@ -166,7 +178,7 @@ class ConstantNormalForce(_NormalForce):
 
     kind: Literal["constant"] = "constant"
     """Where the force comes from."""
-    force_n: Positive
+    force_n: Force
     """N, in N."""
 
     def core_source(self) -> dict[str, Any]:
@@ -190,9 +202,9 @@ class NormalForceOverTime(_NormalForce):
 
     kind: Literal["over_time"] = "over_time"
     """Where the force comes from."""
-    time_s: NotNegativePoints
+    time_s: Times
     """Times of its points since the start, rising, in s."""
-    force_n: NotNegativePoints
+    force_n: Forces
     """N at each point, in N."""
 
     @model_validator(mode="after")
@@ -224,7 +236,7 @@ class NormalForceOverTravel(_NormalForce):
     """Where the force comes from."""
     travel_m: Points
     """Places of its points, the part's travel from its seat, rising, in m."""
-    force_n: NotNegativePoints
+    force_n: Forces
     """N at each point, in N."""
 
     @model_validator(mode="after")
@@ -254,9 +266,9 @@ class SpringNormalForce(_NormalForce):
 
     kind: Literal["springs"] = "springs"
     """Where the force comes from."""
-    preload_n: Positive
+    preload_n: Force
     """N at the seat, in N."""
-    stiffness_n_per_m: Positive
+    stiffness_n_per_m: Stiffness
     """Stiffness of the springs, in N/m."""
     slope: float
     """How far the springs relax for each meter of travel, such as the slope of a taper; below 0
@@ -290,9 +302,9 @@ class InterferenceNormalForce(_NormalForce):
 
     kind: Literal["interference"] = "interference"
     """Where the force comes from."""
-    pressure_pa: Positive
+    pressure_pa: Annotated[float, Field(gt=0.0, le=1e12)]
     """Pressure in the fit, in Pa."""
-    area_m2: Positive
+    area_m2: Annotated[float, Field(gt=0.0, le=1e6)]
     """Area of the whole fit, in m^2."""
 
     def core_source(self) -> dict[str, Any]:
@@ -318,11 +330,11 @@ class TemperatureNormalForce(_NormalForce):
 
     kind: Literal["temperature"] = "temperature"
     """Where the force comes from."""
-    preload_n: Positive
+    preload_n: Force
     """N where the temperature has not changed, in N."""
     expansion_n_per_k: float
     """Change of N with the temperature, in N/K; below 0 where heat loosens the fit."""
-    time_s: NotNegativePoints
+    time_s: Times
     """Times of the points since the start, rising, in s."""
     change_k: Points
     """Change of temperature at each point, in K; straight lines between them."""

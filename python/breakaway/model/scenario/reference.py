@@ -6,15 +6,22 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from breakaway.model.scenario.model import Model, NotNegative, Positive
+from breakaway.model.scenario.magnitudes import (
+    Acceleration,
+    Duration,
+    DurationOrZero,
+    Length,
+    Speed,
+)
+from breakaway.model.scenario.model import Model
 
 
 class ReferenceMotion(Model):
     """What every reference has."""
 
-    distance_m: Positive
+    distance_m: Length
     """Distance to go, in m. Usually the engagement length of the joint."""
-    start_s: NotNegative = 0.0
+    start_s: DurationOrZero = 0.0
     """Start of the motion, in s."""
 
 
@@ -30,7 +37,7 @@ class RampReference(ReferenceMotion):
 
     kind: Literal["ramp"] = "ramp"
     """The kind of reference."""
-    duration_s: Positive
+    duration_s: Duration
     """Duration of the motion, in s."""
 
 
@@ -39,7 +46,7 @@ class MinimumJerk(ReferenceMotion):
 
     kind: Literal["minimum_jerk"] = "minimum_jerk"
     """The kind of reference."""
-    duration_s: Positive
+    duration_s: Duration
     """Duration of the motion, in s."""
 
 
@@ -48,9 +55,9 @@ class TrapezoidalVelocity(ReferenceMotion):
 
     kind: Literal["trapezoidal_velocity"] = "trapezoidal_velocity"
     """The kind of reference."""
-    velocity_m_per_s: Positive
+    velocity_m_per_s: Speed
     """Cruising velocity, in m/s."""
-    acceleration_m_per_s2: Positive
+    acceleration_m_per_s2: Acceleration
     """Acceleration and deceleration, in m/s^2."""
 
     @model_validator(mode="after")

@@ -8,7 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from breakaway.model.scenario.model import Model, NotNegative, Positive
+from breakaway.model.scenario.magnitudes import (
+    Duration,
+    DurationOrZero,
+    ForceBound,
+    ForceOrZero,
+    LengthBound,
+    LengthOrZero,
+    Speed,
+)
+from breakaway.model.scenario.model import Model
 
 Numbers = TypeVar("Numbers", float, NDArray[np.float64])
 """The number of one part, or those of many."""
@@ -34,9 +43,9 @@ def longest_step_s(mass_kg: Numbers, stiffness_n_per_m: Numbers) -> Numbers:
 class Timing(Model):
     """Duration, sampling and integration."""
 
-    duration_s: Positive
+    duration_s: Duration
     """How long is simulated, in s; a whole number of control periods."""
-    control_period_s: Positive = 1e-5
+    control_period_s: Duration = 1e-5
     """T_s: the controller is sampled at this period and its force held, in s."""
     one_sample_delay: bool = False
     """Whether a force takes effect one period after the sample it was computed from."""
@@ -57,24 +66,24 @@ class Trace(Model):
 class Limits(Model):
     """Where a run counts as diverged, released, loose, or too rough."""
 
-    diverged_error_m: Positive | None = None
+    diverged_error_m: LengthBound | None = None
     """Error above which a run has diverged, in m. Left out: half the engagement length."""
-    diverged_force_n: Positive | None = None
+    diverged_force_n: ForceBound | None = None
     """Force above which a run has diverged, in N. Left out: 20 times the stiction force."""
-    release_tolerance_m: NotNegative = 1e-6
+    release_tolerance_m: LengthOrZero = 1e-6
     """The part counts as free this far before the end of the guide, in m: a reference that ends
     there is approached from below."""
-    after_release_s: NotNegative | None = None
+    after_release_s: DurationOrZero | None = None
     """The run ends this long after the release, in s. Left out: it runs for its duration."""
-    breakaway_travel_m: Positive | None = None
+    breakaway_travel_m: LengthBound | None = None
     """Travel at which the joint counts as loose, in m. Left out: 2 stiction_n /
     stiffness_n_per_m."""
-    contact_force_n: NotNegative | None = None
+    contact_force_n: ForceOrZero | None = None
     """Force above which the actuator counts as pushing, in N; it separates impacts. Left out: 0, or
     a thousandth of the actuator's largest force if it has a lag."""
-    peak_force_max_n: Positive | None = None
+    peak_force_max_n: ForceBound | None = None
     """Largest force that the part may see, in N. Left out: no limit."""
-    jump_max_m: Positive | None = None
+    jump_max_m: LengthBound | None = None
     """Largest jump, travel above the reference's speed in one slip, in m. Left out: no limit."""
-    release_velocity_max_m_per_s: Positive | None = None
+    release_velocity_max_m_per_s: Speed | None = None
     """Largest velocity at release, in m/s. Left out: no limit."""

@@ -27,6 +27,7 @@ from breakaway.model.scenario.controller import (
 )
 from breakaway.model.scenario.disturbance import Disturbance, UniformDisturbance
 from breakaway.model.scenario.joint import AnyJoint, Part
+from breakaway.model.scenario.joint_source import JointSource
 from breakaway.model.scenario.model import Model, Name, Text
 from breakaway.model.scenario.normal_force import STEPS_PER_CYCLE
 from breakaway.model.scenario.reference import Reference, StepReference
@@ -91,6 +92,8 @@ class Scenario(Model):
     """Where a run counts as diverged, released, loose, or too rough."""
     trace: Trace = Trace()
     """What is recorded."""
+    joint_source: JointSource | None = None
+    """Where the joint is from. Left out: from no log."""
 
     @property
     def samples(self) -> int:
@@ -306,6 +309,8 @@ class Scenario(Model):
         """
         check_arguments(Scenario.with_, locals(), ScenarioError)
         values = self.model_dump()
+        if _is_model(fields.get("joint")):
+            values["joint_source"] = None
         for path, value in (changes or {}).items():
             _set_path(values, path, _plain(value))
         for name, value in fields.items():
