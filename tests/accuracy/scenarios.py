@@ -11,7 +11,6 @@ from tests.accuracy.draws import Draws
 from tests.accuracy.drives import actuator_table
 from tests.accuracy.kinds import Kind, kind_of
 from tests.accuracy.part import Part, draw_part, joint_table
-from tests.accuracy.steps import default_steps
 
 from breakaway.model.scenario.scenario import Scenario
 
@@ -56,7 +55,6 @@ def draw_case(seed: int, number: int) -> Case:
             "duration_s": duration_s,
             "control_period_s": period_s,
             "one_sample_delay": delayed,
-            "steps_per_period": default_steps(part.mass_kg, part.held_n_per_m, period_s),
         },
         "limits": _limits(part, duration_s),
         "trace": {"every_samples": 0},

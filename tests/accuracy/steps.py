@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, isfinite
-
 import breakaway as bk
-from breakaway.model.scenario.run import longest_step_s
 
 FINER = 50
 """Steps of the reference over those of the default."""
@@ -13,14 +10,6 @@ STEPS_MAX = 2e8
 """Most integration steps of one run: a reference that needs more is less fine."""
 FIRST_STEPS_MAX = 4e7
 """As many for the first try of a reference: only one that is not converged needs more."""
-
-
-def default_steps(mass_kg: float, stiffness_n_per_m: float, period_s: float) -> int:
-    """Steps in a control period where nobody says how many."""
-    if not isfinite(stiffness_n_per_m):
-        return 1
-    longest_s = float(longest_step_s(mass_kg, stiffness_n_per_m))
-    return max(1, ceil(period_s / longest_s * (1 - 1e-9)))
 
 
 def steps_of(scenario: bk.Scenario) -> int:

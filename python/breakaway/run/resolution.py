@@ -28,7 +28,7 @@ AnyPart = TypeVar("AnyPart", bound=Model)
 
 
 def resolve(scenario: Scenario) -> Scenario:
-    """Replace what a scenario leaves open with numbers: gains, residual force, limits.
+    """Replace what a scenario leaves open with numbers: gains, residual force, limits, steps.
 
     The result runs bit-identically to the scenario and depends on nothing else. Designed gains stay
     as they are when its joint is changed: the controller does not know its part.
@@ -68,13 +68,19 @@ def resolve(scenario: Scenario) -> Scenario:
             else limits.contact_force_n,
         }
     )
-    return scenario.model_copy(
+    return at_steps(scenario, scenario.steps_per_period).model_copy(
         update={
             "joint": _with_nominal(with_residual(joint, scenario.part.mass_kg)),
             "limits": explicit_limits,
             "controller": with_gains(scenario),
         }
     )
+
+
+def at_steps(scenario: Scenario, steps: int) -> Scenario:
+    """Give the scenario with so many integration steps in a control period, unchecked."""
+    timing = scenario.timing.model_copy(update={"steps_per_period": steps})
+    return scenario.model_copy(update={"timing": timing})
 
 
 def _contact_force_n(scenario: Scenario) -> float:

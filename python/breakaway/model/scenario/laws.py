@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from breakaway.model.scenario.joint import (
@@ -19,8 +20,9 @@ from breakaway.model.scenario.joint import (
     TwoRegion,
 )
 from breakaway.model.scenario.model import Model, Positive
-from breakaway.model.scenario.run import Numbers
 
+Numbers = TypeVar("Numbers", float, NDArray[np.float64])
+"""The number of one part, or those of many."""
 _MODELS: dict[str, type[AnyJoint]] = {
     model.model_fields["law"].default: model for model in get_args(AnyJoint)
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import ceil, isfinite
+from math import ceil, isfinite, sqrt
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Field, model_validator
@@ -31,8 +31,9 @@ from breakaway.model.scenario.joint_source import JointSource
 from breakaway.model.scenario.model import Model, Name, Text
 from breakaway.model.scenario.normal_force import STEPS_PER_CYCLE
 from breakaway.model.scenario.reference import Reference, StepReference
-from breakaway.model.scenario.run import LONGEST_STEP, Limits, Timing, Trace, longest_step_s
+from breakaway.model.scenario.run import Limits, Timing, Trace
 from breakaway.model.scenario.sensor import Sensors, Watch
+from breakaway.model.scenario.steps import OF_OSCILLATION, steps_per_period
 
 SAMPLES_MAX = 4_000_000_000
 """Most integration steps of one run."""
@@ -100,15 +101,23 @@ class Scenario(Model):
         """Control samples of a run."""
         return round(self.timing.duration_s / self.timing.control_period_s)
 
+    @property
+    def steps_per_period(self) -> int:
+        """Integration steps in a control period: as stated, or what "auto" stands for."""
+        stated = self.timing.steps_per_period
+        return int(steps_per_period(self)) if stated == "auto" else stated
+
     @model_validator(mode="after")
     def _runs_whole_periods(self) -> Self:
         duration, period = self.timing.duration_s, self.timing.control_period_s
         ratio = duration / period
-        steps = ratio * self.timing.steps_per_period
+        in_period = self.steps_per_period
+        steps = ratio * in_period
         if steps > SAMPLES_MAX:
             raise ValueError(
-                f"timing.duration_s: {duration!r} takes {steps:.3g} integration steps, more than "
-                f"{SAMPLES_MAX:.0e}; shorten it or lengthen timing.control_period_s"
+                f"timing.duration_s: {duration!r} takes {steps:.3g} integration steps, "
+                f"{in_period:,} in a control period, more than {SAMPLES_MAX:.0e}; shorten it, or give "
+                "timing.steps_per_period"
             )
         whole = max(1, round(ratio))
         if abs(ratio - whole) > 1e-6:
@@ -128,11 +137,11 @@ class Scenario(Model):
     def _steps_are_short(self) -> Self:
         timing, k_e, m = self.timing, self.joint.stiffness_n_per_m, self.part.mass_kg
         self._check_rk4_has_one_bristle()
-        if not isfinite(k_e):
+        if timing.steps_per_period == "auto" or not isfinite(k_e):
             return self
         step_s = timing.control_period_s / timing.steps_per_period
-        longest_s = float(longest_step_s(m, k_e))
-        rule = f"{LONGEST_STEP:g} sqrt(part.mass_kg / joint.stiffness_n_per_m)"
+        longest_s = OF_OSCILLATION * sqrt(m / k_e)
+        rule = f"{OF_OSCILLATION:g} sqrt(part.mass_kg / joint.stiffness_n_per_m)"
         if timing.integrator == "rk4":
             longest_s, rule = longest_s / 15, f"{rule} / 15, because rk4 is explicit,"
             damping = self.joint.damping_n_s_per_m
@@ -242,7 +251,7 @@ class Scenario(Model):
             return self
         if normal.transverse is not None:
             self._check_law_is_in_plane()
-        step_s = self.timing.control_period_s / self.timing.steps_per_period
+        step_s = self.timing.control_period_s / self.steps_per_period
         for name in ("vibration", "transverse"):
             vibration = getattr(normal, name)
             if vibration is None:

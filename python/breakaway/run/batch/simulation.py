@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from types import MappingProxyType
 
@@ -18,6 +18,7 @@ from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
 from breakaway.model.scenario.distribution import Distribution
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.scenario.steps import steps_per_period
 from breakaway.run.batch.batch import Batch
 from breakaway.run.batch.columns import (
     check_paths,
@@ -27,6 +28,7 @@ from breakaway.run.batch.columns import (
 )
 from breakaway.run.batch.draw import Design, draw_columns
 from breakaway.run.finished import RunMetrics
+from breakaway.run.resolution import at_steps
 
 METRICS = (*(field.name for field in fields(RunMetrics)), "outcome")
 """What can be asked of each run."""
@@ -147,26 +149,59 @@ def run_columns(
     instructions: str | None = None,
 ) -> Batch:
     """Run any runs of a scenario whose controller is designed, each with its values; unchecked."""
-    shared, varied = core_columns(nominal, columns)
     for column in (run_index, *columns.values()):
         column.setflags(write=False)
-    figures, codes = _core.run_many(
-        shared,
-        run_index,
-        [(place, np.ascontiguousarray(column)) for place, column in varied],
-        [name for name in names if name != "outcome"],
-        "outcome" in names,
-        threads,
-        instructions or _core.instructions()[0],
-        tell or (lambda _done: None),
-    )
+    metrics = {name: np.full(len(run_index), np.nan) for name in names if name != "outcome"}
+    codes = np.zeros(len(run_index), dtype=np.uint8)
+    done = 0
+
+    def told(count: int) -> None:
+        if tell:
+            tell(done + count)
+
+    for steps, rows in _of_equal_steps(nominal, columns, len(run_index)):
+        shared, varied = core_columns(
+            at_steps(nominal, steps), {path: column[rows] for path, column in columns.items()}
+        )
+        figures, ended = _core.run_many(
+            shared,
+            np.ascontiguousarray(run_index[rows]),
+            [(place, np.ascontiguousarray(column)) for place, column in varied],
+            list(metrics),
+            "outcome" in names,
+            threads,
+            instructions or _core.instructions()[0],
+            told,
+        )
+        for name, values in figures.items():
+            metrics[name][rows] = np.frombuffer(values)
+        if "outcome" in names:
+            codes[rows] = np.frombuffer(ended, dtype=np.uint8)
+        done += len(rows)
     return Batch(
         scenario=nominal,
         run_index=run_index,
         varied=MappingProxyType(dict(columns)),
-        metrics=MappingProxyType({name: np.frombuffer(v) for name, v in figures.items()}),
-        outcome_codes=np.frombuffer(codes, dtype=np.uint8) if "outcome" in names else None,
+        metrics=MappingProxyType(metrics),
+        outcome_codes=codes if "outcome" in names else None,
     )
+
+
+def _of_equal_steps(
+    nominal: Scenario, columns: Mapping[str, NDArray[np.float64]], runs: int
+) -> Iterator[tuple[int, NDArray[np.int64]]]:
+    """Give the runs by the integration steps that they need, most steps first.
+
+    Longest guides come first: runs that end together share lanes best.
+    """
+    steps = np.full(runs, nominal.steps_per_period)
+    if nominal.timing.steps_per_period == "auto":
+        steps = np.broadcast_to(steps_per_period(nominal, columns), (runs,))
+    for needed in np.unique(steps)[::-1]:
+        rows = np.flatnonzero(steps == needed)
+        if (length_m := columns.get("joint.engagement_length_m")) is not None:
+            rows = rows[np.argsort(-length_m[rows], kind="stable")]
+        yield int(needed), rows
 
 
 def _wanted(metrics: Sequence[str] | None) -> Sequence[str]:

@@ -11,10 +11,9 @@ from breakaway.base.text import shown
 from breakaway.errors import StudyError
 from breakaway.model.scenario.correlation import correlation_matrix, lower_factor
 from breakaway.model.scenario.distribution import Distribution, Uniform
-from breakaway.model.scenario.laws import LAWS, Law, numbers_of_parts, shared_numbers, stiffness_of
+from breakaway.model.scenario.laws import LAWS, Law, numbers_of_parts, shared_numbers
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import LEVEL_DRAW, QUANTITIES, PartPopulation
-from breakaway.model.scenario.run import longest_step_s
 from breakaway.model.scenario.scenario import Scenario
 from breakaway.model.scenario.variation import VARIATION_WORDS, VariationKind
 from breakaway.run.batch import draw_columns
@@ -116,18 +115,6 @@ def _disturbance(population: PartPopulation, variation: VariationKind) -> dict[s
     return {}
 
 
-def steps_per_period(population: PartPopulation, parts: dict[str, Array]) -> NDArray[np.int64]:
-    """Give the integration steps of each part in a control period.
-
-    As many as a scenario asks for, rounded up to 1, 2, 3, 4, 6, 8, 12, ..., so that there are few
-    groups of equal steps.
-    """
-    longest_s = longest_step_s(parts["mass_kg"], stiffness_of(parts))
-    needed = np.ceil(population.control_period_s / longest_s * (1.0 - 1e-9))
-    grades = np.unique([grade * 2**n for n in range(17) for grade in (1, 3)])
-    return grades[np.searchsorted(grades, needed)]
-
-
 def scenario_of(
     population: PartPopulation,
     method: Method,
@@ -135,7 +122,6 @@ def scenario_of(
     variation: VariationKind,
     *,
     seed: int,
-    steps: int,
 ) -> Scenario:
     """Give the scenario that the parts of a population share: a method before the nominal part.
 
@@ -165,7 +151,6 @@ def scenario_of(
             "duration_s": population.duration_s,
             "control_period_s": population.control_period_s,
             "one_sample_delay": population.one_sample_delay,
-            "steps_per_period": max(steps, int(steps_per_period(population, nominal)[0])),
         },
         "limits": {"after_release_s": 0.0, "release_tolerance_m": 0.0},
         "trace": {"every_samples": 1},
@@ -173,8 +158,7 @@ def scenario_of(
     for path, column in part_columns(population, method, law, variation, nominal).items():
         _put(values, path, float(column[0]))
     scenario = Scenario.parse(values)
-    timing = scenario.timing.model_copy(update={"steps_per_period": steps})
-    return scenario.model_copy(update={"controller": with_gains(scenario), "timing": timing})
+    return scenario.model_copy(update={"controller": with_gains(scenario)})
 
 
 def _put(values: dict[str, object], path: str, value: float) -> None:

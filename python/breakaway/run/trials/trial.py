@@ -20,7 +20,7 @@ from breakaway.model.scenario.scenario import Scenario
 from breakaway.model.scenario.variation import VariationKind
 from breakaway.run.batch import check_batch_fits, run_columns
 from breakaway.run.finished import Run
-from breakaway.run.trials.parts import draw_parts, part_columns, scenario_of, steps_per_period
+from breakaway.run.trials.parts import draw_parts, part_columns, scenario_of
 
 Array = NDArray[np.float64]
 
@@ -105,9 +105,8 @@ class Trial(OneLine, ByValue):
         check_arguments(Trial.scenario, locals(), StudyError)
         place = self._row(i)
         row = {name: values[place : place + 1] for name, values in self.parts.items()}
-        steps = int(steps_per_period(self.population, row)[0])
         asked = (self.population, self.method, self.law, self.variation)
-        base = scenario_of(*asked, seed=self.seed, steps=steps)
+        base = scenario_of(*asked, seed=self.seed)
         columns = part_columns(*asked, row)
         return base.with_({path: float(values[0]) for path, values in columns.items()})
 
@@ -147,8 +146,8 @@ def run_trial(
 ) -> Trial:
     """Try a method on parts of a population.
 
-    Parts are simulated in groups that need the same integration step, longest guides first; the
-    results depend neither on the grouping nor on the threads.
+    Each part takes the integration steps that it and the method's rig need, as "auto" in
+    `timing.steps_per_period`; the results do not depend on the threads.
 
     Parameters
     ----------
@@ -197,29 +196,14 @@ def run_trial(
     numbers = run_numbers(runs)
     check_batch_fits(numbers.stop - numbers.start, len(OF_A_PART), len(TRIAL_METRICS))
     parts = draw_parts(population, numbers, seed=seed)
-    steps = steps_per_period(population, parts)
-    metrics = {name: np.full(len(numbers), np.nan) for name in TRIAL_METRICS}
     asked = (population, method, law, variation)
-    done = 0
-
-    def tell(count: int) -> None:
-        if progress:
-            progress(done + count, len(numbers))
-
-    for needed in np.unique(steps)[::-1]:
-        rows = np.flatnonzero(steps == needed)
-        rows = rows[np.argsort(-parts["engagement_length_m"][rows], kind="stable")]
-        group = {name: values[rows] for name, values in parts.items()}
-        shared = scenario_of(*asked, seed=seed, steps=int(needed))
-        batch = run_columns(
-            shared,
-            np.asarray(numbers.start + rows, dtype=np.uint64),
-            part_columns(*asked, group),
-            TRIAL_METRICS,
-            workers,
-            tell,
-        )
-        for name in TRIAL_METRICS:
-            metrics[name][rows] = batch.metrics[name]
-        done += len(rows)
+    batch = run_columns(
+        scenario_of(*asked, seed=seed),
+        np.arange(numbers.start, numbers.stop, dtype=np.uint64),
+        part_columns(*asked, parts),
+        TRIAL_METRICS,
+        workers,
+        progress and (lambda done: progress(done, len(numbers))),
+    )
+    metrics = dict(batch.metrics)
     return Trial(*asked, seed, numbers, parts, metrics)
