@@ -19,7 +19,7 @@ pub enum Tip<R> {
 /// A feed axis: its drive p follows the commanded speed, the rest yields.
 ///
 /// ```text
-/// dp/dt   = w,  dw/dt = clip((command − w) / h, −a, a),  |w| ≤ w_max
+/// dp/dt   = w,  dw/dt = a sgn(command − w) until w = command,  |w| ≤ w_max
 /// m_t x_t'' = k_f (p − x_t) + c_f (w − x_t') − F_s                      tool
 /// m_p x_p'' = F_s − F,  F_s = k (u − x_p + x_t) − c (x_p' − x_t')       tip of the stack
 /// F       = that of the [`Contact`] with the part
@@ -148,7 +148,7 @@ impl<R: Real> FeedAxis<R> {
         h: R,
     ) -> Driven<R> {
         let k = (R::constant(0.5) * h).named("half_step_s");
-        let (feed_mean, feed_mid, late) = self.feed(state, command, h);
+        let (feed_mean, feed_mid, late_s) = self.feed(state, command, h);
         R::section("tool: m_t dv_t/dt = k_f (p - x_t) + c_f (w - v_t) - F_s");
         let (k_f, c_f) = (self.stiffness_n_per_m, self.damping_n_s_per_m);
         let inertia = (self.tool_mass_kg / k).named("tool_inertia_n_s_per_m");
@@ -172,7 +172,7 @@ impl<R: Real> FeedAxis<R> {
             effort: Effort {
                 charge_c: current.abs() * h,
                 current_square_a2_s: current * current * h,
-                saturated_s: R::select(charged.limited.is_set() | late, h, R::zero()),
+                saturated_s: R::select(charged.limited.is_set(), h, late_s),
                 ..Effort::none()
             },
         }
@@ -188,23 +188,25 @@ impl<R: Real> FeedAxis<R> {
         tip_m - self.contact.gap_m - part_m
     }
 
-    /// Moves the drive; gives its mean speed, its middle, and whether it lags its command. A command
-    /// that is not a number stops it.
+    /// Moves the drive: at its acceleration until it is as fast as commanded. Gives its mean speed, its
+    /// middle, and for how long it lags its command. A command that is not a number stops it.
     #[inline(always)]
-    fn feed(&self, state: &mut ActuatorState<R>, command: &Command<R>, h: R) -> (R, R, R::Mask) {
-        R::section("feed: dw/dt = clip((command - w) / h, -a, a)");
+    fn feed(&self, state: &mut ActuatorState<R>, command: &Command<R>, h: R) -> (R, R, R) {
+        R::section("feed: dw/dt = a sgn(command - w) until w is the command");
         let half = R::constant(0.5);
         let limit = self.speed_max_m_per_s;
         let told = command.feed_m_per_s;
         let wanted = R::select(told.le(told), told.clamp(-limit, limit), R::zero());
         let most = (self.acceleration_max_m_per_s2 * h).named("most_m_per_s");
         let change = (wanted - state.feed_m_per_s).clamp(-most, most).named("change_m_per_s");
-        let mean = half.mul_add(change, state.feed_m_per_s).named("feed_mean_m_per_s");
+        let share = (change.abs() / most).named("accelerating_share");
+        let follows = (-half).mul_add(share, R::one()).named("follows");
+        let mean = follows.mul_add(change, state.feed_m_per_s).named("feed_mean_m_per_s");
         let mid = (half * h).mul_add(mean, state.feed_m).named("feed_middle_m");
         state.feed_m = h.mul_add(mean, state.feed_m);
         state.feed_m_per_s = state.feed_m_per_s + change;
-        let late = state.feed_m_per_s.lt(told) | told.lt(state.feed_m_per_s);
-        (mean, mid, late)
+        let beyond = wanted.lt(told) | told.lt(wanted);
+        (mean, mid, R::select(beyond, h, share * h))
     }
 
     /// Moves tool and tip by the force that acted; books the energy of the step. The contact's loss

@@ -2,7 +2,7 @@
 
 use super::{ActuatorState, Driven, ForceRange};
 use crate::parameters::parameters;
-use crate::real::Real;
+use crate::real::{Function, Real};
 
 parameters! {
     /// Push-only, behind a first-order lag and a limit of its rate.
@@ -11,8 +11,8 @@ parameters! {
     /// dF/dt = clip((u − F) / τ, −r, r),  u = clip(command, 0, F_max),  τ = 1 / (2 π f)
     /// ```
     ///
-    /// The lag is stepped exactly for a held command, the limit holds for the mean rate of a step;
-    /// the part feels the mean of the force at both ends of the step. A fast hydraulic, voice-coil or
+    /// Lag and limit are stepped exactly for a held command, also where the one follows the other
+    /// within a step; the part feels the mean of the force at both ends of the step. A fast hydraulic, voice-coil or
     /// pneumatic drive; f is the frequency at which the force is 3 dB down.
     pub struct ForceActuator {
         /// F_max in N.
@@ -34,18 +34,39 @@ impl<R: Real> ForceActuator<R> {
     #[inline(always)]
     pub(super) fn drive(&self, state: &mut ActuatorState<R>, command_n: R, h: R) -> Driven<R> {
         R::section("force actuator: dF/dt = clip((u - F) / tau, -r, r)");
-        let before = state.force_n;
+        let (before, r) = (state.force_n, self.force_rate_max_n_per_s);
         let target = self.range().limit(command_n);
         let per_s = R::constant(-2.0 * core::f64::consts::PI) * self.bandwidth_hz;
         let share = (R::one() - (per_s * h).exp()).named("lag_share");
-        let wanted = ((target - before) * share).named("wanted_change_n");
-        let most = (self.force_rate_max_n_per_s * h).named("most_n");
+        let missing = (target - before).named("missing_n");
+        let slowest = (-r / per_s).named("slowest_n"); // r τ: as far off, the lag is as fast as the limit
+        let limited_s = R::zero().max((missing.abs() - slowest) / r).min(h).named("limited_s");
+        let most = (r * h).named("most_n");
+        let whole = R::select(h.le(limited_s), missing.clamp(-most, most), missing * share);
+        let within = R::zero().lt(limited_s) & limited_s.lt(h);
+        let [change] = R::renewed::<LimitThenLag, 4, 1>(
+            within,
+            [whole],
+            [missing, r * limited_s, per_s, h - limited_s],
+        );
         // Rounding may lead out of the range, by a bit.
-        let force_n = self.range().limit(before + wanted.clamp(-most, most));
+        let force_n = self.range().limit(before + change.named("change_n"));
         state.force_n = force_n.ebbed().named("actuator_force_n");
-        let limited = target.lt(command_n) | command_n.lt(target) | most.lt(wanted.abs());
+        let beyond = target.lt(command_n) | command_n.lt(target);
         let mut driven = Driven::rigid(R::constant(0.5) * (before + state.force_n));
-        driven.effort.saturated_s = R::select(limited, h, R::zero());
+        driven.effort.saturated_s = R::select(beyond, h, limited_s);
         driven
+    }
+}
+
+/// The change of the force in a step that begins at the limit of its rate, `limited` N, and ends in
+/// the lag.
+struct LimitThenLag;
+
+impl Function<4, 1> for LimitThenLag {
+    #[inline(always)]
+    fn of<R: Real>([missing, limited, per_s, lagging_s]: [R; 4]) -> [R; 1] {
+        let first = missing.sign() * limited;
+        [(missing - first).mul_add(R::one() - (per_s * lagging_s).exp(), first)]
     }
 }
