@@ -286,6 +286,10 @@ def calls(w):
         "export_c": (bk.export_c, {"scenario": w.scenario, "out": w.folder / "c"}),
         "export_fmu": (bk.export_fmu, {"scenario": w.scenario, "out": w.folder / "rig.fmu"}),
         "find_breakaway_events": (bk.find_breakaway_events, {"log": w.starts[0]}),
+        "check_accuracy": (
+            bk.check_accuracy,
+            {"scenario": w.scenario, "run_index": 0, "progress": None},
+        ),
         "friction_field": (
             bk.friction_field,
             {

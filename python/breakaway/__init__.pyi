@@ -134,6 +134,8 @@ from breakaway.model.scenario import load_stack as load_stack
 from breakaway.model.scenario import preset_names as preset_names
 from breakaway.model.scenario import save_scenario as save_scenario
 from breakaway.model.scenario import scenario_schema as scenario_schema
+from breakaway.run.accuracy import Accuracy as Accuracy
+from breakaway.run.accuracy import check_accuracy as check_accuracy
 from breakaway.run.batch import Batch as Batch
 from breakaway.run.batch import draw_columns as draw_columns
 from breakaway.run.batch import grid_columns as grid_columns

@@ -110,7 +110,7 @@ def test_what_a_method_knows_has_to_be_a_number_of_it(population):
     method = bk.load_method("force_ramp")
     wrong = method.model_copy(update={"knows": {"controler.travel_m": "engagement_length_m"}})
     with pytest.raises(StudyError, match=r"controler\.travel_m"):
-        scenario_of(population, wrong, "lugre", "field", seed=0, steps=8)
+        scenario_of(population, wrong, "lugre", "field", seed=0)
 
 
 def test_a_method_may_be_told_a_multiple_of_a_length(population):

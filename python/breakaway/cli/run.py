@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from breakaway.cli.accuracy import accuracy_of, accuracy_sheet
 from breakaway.cli.options import Json, ScenarioName
 from breakaway.cli.quantity import show, show_value, split_unit
 from breakaway.cli.sheet import Sheet
@@ -15,6 +16,7 @@ from breakaway.cli.show import busy, say, say_json, say_written
 if TYPE_CHECKING:
     from breakaway.cli.overlay import Overlay
     from breakaway.model.scenario import Scenario
+    from breakaway.run.accuracy import Accuracy
     from breakaway.run.finished import Run
 
 LIMIT_OF = {
@@ -50,6 +52,13 @@ def run(
     seed: Annotated[
         int | None, typer.Option(help="Seed of all random draws. Left out: the scenario's.")
     ] = None,
+    check_accuracy: Annotated[
+        bool,
+        typer.Option(
+            "--check-accuracy",
+            help="Run again with finer steps until nothing moves, and say what steps are wanted.",
+        ),
+    ] = False,
     json: Json = False,
 ) -> None:
     """Simulate one extraction and show its metrics.
@@ -74,12 +83,15 @@ def run(
         overlay = overlay_of(joint, asked)
         asked = overlay.scenario
     finished, files = _simulate(asked, out)
+    accuracy = accuracy_of(finished.scenario) if check_accuracy else None
     if json:
-        _show_json(finished, files, overlay)
+        _show_json(finished, files, overlay, accuracy)
         return
     if overlay:
         say(*overlay.tables())
     _show(finished)
+    if accuracy:
+        say(*accuracy_sheet(accuracy))
     for note in _notes(finished, out):
         say(note)
     say_written(files)
@@ -129,10 +141,14 @@ def _notes(finished: Run, out: Path | None) -> list[str]:
     return notes
 
 
-def _show_json(finished: Run, files: list[Path], overlay: Overlay | None) -> None:
+def _show_json(
+    finished: Run, files: list[Path], overlay: Overlay | None, accuracy: Accuracy | None
+) -> None:
     from breakaway.show.run_files import run_summary
 
     content = run_summary(finished) | {"files": [str(path) for path in files]}
     if overlay:
         content["joint"] = overlay.to_dict()
+    if accuracy:
+        content["accuracy"] = accuracy.to_dict()
     say_json(content)

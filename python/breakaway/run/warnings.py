@@ -12,6 +12,7 @@ from breakaway.model.friction.passivity import passive_attraction_n_per_s, passi
 from breakaway.model.scenario.controller import Gains, ReferenceController, gain_sets
 from breakaway.model.scenario.joint import AnyJoint, Gms
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.model.scenario.steps import steps_per_period
 
 if TYPE_CHECKING:
     from breakaway.run.finished import Outcome, RunMetrics
@@ -36,6 +37,7 @@ def warnings_of(
     """Say what is doubtful about a run of a resolved scenario, one sentence each."""
     if outcome == "diverged":
         yield from _diverged(scenario, metrics)
+    yield from _steps_are_coarse(scenario)
     yield from _lost_of_the_log(scenario)
     yield from _levels_do_not_fit(scenario.joint)
     yield from _friction_rises(scenario.joint)
@@ -106,6 +108,17 @@ def _reference_does_not_fit(scenario: Scenario) -> Iterator[str]:
         yield (
             f"reference.start_s = {reference.start_s:.5g} s is not before the end of the run at "
             f"timing.duration_s = {scenario.timing.duration_s:.5g} s: nothing is pulled"
+        )
+
+
+def _steps_are_coarse(scenario: Scenario) -> Iterator[str]:
+    """Compare with what "auto" would take; the paper's own scenarios are named for their loop."""
+    steps, wanted = scenario.steps_per_period, int(steps_per_period(scenario))
+    if steps < wanted and not scenario.name.startswith("paper_"):
+        yield (
+            f"timing.steps_per_period = {steps} is coarse: part and rig ask for {wanted}, and with "
+            "fewer metrics may be more than 1 % off; give 'auto', or see `breakaway run "
+            "--check-accuracy`"
         )
 
 

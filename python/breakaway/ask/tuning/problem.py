@@ -261,7 +261,7 @@ class Tuning(StudyModel):
         for law in self.laws:
             try:
                 asked = (self.population, self.method, law, self.variation)
-                scenario_of(*asked, seed=self.seed, steps=1)
+                scenario_of(*asked, seed=self.seed)
             except ScenarioError as error:
                 raise StudyError(
                     f"method: does not fit the population under the law {law}: {error}"

@@ -116,8 +116,8 @@ class Scenario(Model):
         if steps > SAMPLES_MAX:
             raise ValueError(
                 f"timing.duration_s: {duration!r} takes {steps:.3g} integration steps, "
-                f"{in_period:,} in a control period, more than {SAMPLES_MAX:.0e}; shorten it, or give "
-                "timing.steps_per_period"
+                f"{in_period:,} in a control period, more than {SAMPLES_MAX:.0e}; shorten it, or "
+                "give timing.steps_per_period"
             )
         whole = max(1, round(ratio))
         if abs(ratio - whole) > 1e-6:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from breakaway.model.scenario.actuator import FeedAxis, Piezo
+from breakaway.model.scenario.actuator import FeedAxis, ForceActuator, Piezo
+from breakaway.model.scenario.joint import StribeckJoint, TwoRegion
 from breakaway.model.scenario.normal_force import STEPS_PER_CYCLE
 
 if TYPE_CHECKING:
@@ -17,19 +18,26 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 OF_OSCILLATION = 0.3
-"""Longest step over sqrt(mass / stiffness) of the part, between its bristles and its contact."""
-OF_FACE = 0.15
-"""Longest step over sqrt(mass / stiffness) of the tool and of the tip of a stack."""
+"""Longest step over 1 / omega, omega^2 = k_e / m + k_c (1 / m + 1 / m_face), of a part between its
+bristles and its contact with tool or tip; k_c is 0 where there is no contact."""
+OF_JUMPING = 0.1
+"""The same for laws whose friction drops at once: a step errs by its own length when it does."""
+OF_TOOL = 0.15
+"""Longest step over sqrt(mass / stiffness) of the tool, whose impacts make the peaks."""
+OF_TIP = 0.3
+"""The same of the tip of a stack."""
 OF_DAMPING = 0.6
 """Longest step over mass / damping of the part."""
 OF_FALL = 1.0
 """Longest step over m v_s / (F_s - F_c), in which friction falls as the part breaks loose."""
-LEAST_OF_FALL = 1.0 / 16.0
-"""However fast friction falls, steps need not be shorter than this share of what oscillations ask
-for: a faster fall is a drop, and the part moves on at its own pace."""
-OF_SLIP = 0.01
+LEAST = 1.0 / 8.0
+"""However fast friction falls or damping acts, steps need not be shorter than this share of what
+oscillations ask for: what is faster is over at once, and the part moves on at its own pace."""
+OF_SLIP = 0.005
 """Longest step over sqrt(2 m l_f / F_s), about the time in which a part with rigid friction that
 slips is through its guide."""
+OF_LAG = 0.5
+"""Longest step over the time constant of a force actuator."""
 OF_RK4 = 15.0
 """How many times as many steps rk4 takes: it is explicit, and the oracle."""
 GRADES = np.unique([grade * 2**n for n in range(31) for grade in (1, 3)])
@@ -94,31 +102,49 @@ def steps_per_period(
 
 def _needed_s(scenario: Scenario, number: _Numbers) -> Iterator[Array]:
     joint, actuator = scenario.joint, scenario.actuator
-    mass, damping = number("part.mass_kg"), np.asarray(0.0)
-    stiffness = np.asarray(0.0)
-    rigid = not np.isfinite(joint.stiffness_n_per_m)
-    if not rigid:
-        stiffness = stiffness + number("joint.stiffness_n_per_m")
-        damping = damping + number("joint.damping_n_s_per_m")
+    yield from _of_part_s(scenario, number)
     if isinstance(actuator, FeedAxis):
-        stiffness = stiffness + number("actuator.contact.stiffness_n_per_m")
-        damping = damping + number("actuator.contact.damping_n_s_per_m")
         yield from _of_faces_s(actuator, number)
-    with np.errstate(divide="ignore"):
-        oscillation_s = OF_OSCILLATION * np.sqrt(mass / stiffness)
-        yield oscillation_s
-        yield OF_DAMPING * mass / damping
-    if rigid:
-        length_m, stiction_n = number("joint.engagement_length_m"), number("joint.stiction_n")
-        yield OF_SLIP * np.sqrt(2.0 * mass * length_m / stiction_n)
-    elif hasattr(joint, "stribeck_velocity_m_per_s"):
-        fall_n = np.maximum(number("joint.stiction_n") - number("joint.coulomb_n"), 1e-300)
-        fall_s = OF_FALL * mass * number("joint.stribeck_velocity_m_per_s") / fall_n
-        yield np.maximum(fall_s, LEAST_OF_FALL * oscillation_s)
+    if isinstance(actuator, ForceActuator):
+        yield OF_LAG / (2.0 * np.pi * number("actuator.bandwidth_hz"))
     normal = joint.normal_force
     for name in ("vibration", "transverse"):
         if normal is not None and getattr(normal, name) is not None:
             yield 1.0 / (STEPS_PER_CYCLE * number(f"joint.normal_force.{name}.frequency_hz"))
+
+
+def _of_part_s(scenario: Scenario, number: _Numbers) -> Iterator[Array]:
+    joint, mass = scenario.joint, number("part.mass_kg")
+    square, rate = _contact_rates(scenario.actuator, mass, number)
+    if rigid := not np.isfinite(joint.stiffness_n_per_m):
+        length_m, stiction_n = number("joint.engagement_length_m"), number("joint.stiction_n")
+        yield OF_SLIP * np.sqrt(2.0 * mass * length_m / stiction_n)
+    else:
+        square = square + number("joint.stiffness_n_per_m") / mass
+        rate = rate + number("joint.damping_n_s_per_m") / mass
+    jumps = rigid or isinstance(joint, TwoRegion)
+    with np.errstate(divide="ignore"):
+        oscillation_s = (OF_JUMPING if jumps else OF_OSCILLATION) / np.sqrt(square)
+        yield oscillation_s
+        yield np.maximum(OF_DAMPING / rate, LEAST * oscillation_s)
+    if isinstance(joint, StribeckJoint):
+        fall_n = np.maximum(number("joint.stiction_n") - number("joint.coulomb_n"), 1e-300)
+        fall_s = OF_FALL * mass * number("joint.stribeck_velocity_m_per_s") / fall_n
+        yield np.maximum(fall_s, LEAST * oscillation_s)
+
+
+def _contact_rates(actuator: object, mass: Array, number: _Numbers) -> tuple[Array, Array]:
+    """Give omega^2 and c / m of the contact of part and face."""
+    if not isinstance(actuator, FeedAxis):
+        return np.asarray(0.0), np.asarray(0.0)
+    stack = isinstance(actuator.tip, Piezo)
+    face = number("actuator.tip.tip_mass_kg" if stack else "actuator.tool_mass_kg")
+    per_mass = 1.0 / mass + 1.0 / face
+    contact = "actuator.contact."
+    return (
+        per_mass * number(f"{contact}stiffness_n_per_m"),
+        per_mass * number(f"{contact}damping_n_s_per_m"),
+    )
 
 
 def _of_faces_s(axis: FeedAxis, number: _Numbers) -> Iterator[Array]:
@@ -129,5 +155,5 @@ def _of_faces_s(axis: FeedAxis, number: _Numbers) -> Iterator[Array]:
     if isinstance(axis.tip, Piezo):
         before_tool = number("actuator.tip.stiffness_n_per_m")
         tip_kg = number("actuator.tip.tip_mass_kg")
-        yield OF_FACE * np.sqrt(tip_kg / (before_tool + contact_n_per_m))
-    yield OF_FACE * np.sqrt(number("actuator.tool_mass_kg") / (axis_n_per_m + before_tool))
+        yield OF_TIP * np.sqrt(tip_kg / (before_tool + contact_n_per_m))
+    yield OF_TOOL * np.sqrt(number("actuator.tool_mass_kg") / (axis_n_per_m + before_tool))
