@@ -23,7 +23,6 @@ PAPER = bk.load_scenario("paper_as_computed")
         ("reference.distance_m", 1e10, "1e+09"),
         ("reference.start_s", 1e9, "1e+06"),
         ("timing.duration_s", 1e9, "1e+06"),
-        ("limits.peak_force_max_n", 1e300, "1e+12"),
     ],
 )
 def test_what_no_part_has_is_refused(path: str, value: float, most: str) -> None:
@@ -38,6 +37,11 @@ def test_what_no_actuator_has_is_refused(field: str, value: float) -> None:
     usual = {"force_max_n": 900.0, "bandwidth_hz": 100.0, "force_rate_max_n_per_s": 1e6}
     with pytest.raises(bk.ScenarioError, match=rf"^{field}: .* is not <= 1e\+\d\d; give a number"):
         bk.ForceActuator(**(usual | {field: value}))
+
+
+def test_a_limit_may_be_none() -> None:
+    """A bound beyond everything asks for nothing."""
+    assert PAPER.with_({"limits.diverged_force_n": 1e300}).limits.diverged_force_n == 1e300
 
 
 def warnings_of(changes: dict[str, Any], words: str) -> list[str]:

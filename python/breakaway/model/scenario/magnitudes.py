@@ -35,7 +35,3 @@ Damping = Annotated[float, Field(ge=0.0, le=1e12)]
 """In N s/m."""
 Frequency = Annotated[float, Field(gt=0.0, le=1e9)]
 """In Hz."""
-LengthBound = Annotated[float, Field(gt=0.0, le=1e12)]
-"""Where a run is judged, in m: bounds may lie far beyond what is bounded."""
-ForceBound = Annotated[float, Field(gt=0.0, le=1e12)]
-"""Where a run is judged, in N."""

@@ -9,13 +9,10 @@ from pydantic import Field
 from breakaway.model.scenario.magnitudes import (
     Duration,
     DurationOrZero,
-    ForceBound,
     ForceOrZero,
-    LengthBound,
     LengthOrZero,
-    Speed,
 )
-from breakaway.model.scenario.model import Model
+from breakaway.model.scenario.model import Model, Positive
 
 
 class Timing(Model):
@@ -45,24 +42,24 @@ class Trace(Model):
 class Limits(Model):
     """Where a run counts as diverged, released, loose, or too rough."""
 
-    diverged_error_m: LengthBound | None = None
+    diverged_error_m: Positive | None = None
     """Error above which a run has diverged, in m. Left out: half the engagement length."""
-    diverged_force_n: ForceBound | None = None
+    diverged_force_n: Positive | None = None
     """Force above which a run has diverged, in N. Left out: 20 times the stiction force."""
     release_tolerance_m: LengthOrZero = 1e-6
     """The part counts as free this far before the end of the guide, in m: a reference that ends
     there is approached from below."""
     after_release_s: DurationOrZero | None = None
     """The run ends this long after the release, in s. Left out: it runs for its duration."""
-    breakaway_travel_m: LengthBound | None = None
+    breakaway_travel_m: Positive | None = None
     """Travel at which the joint counts as loose, in m. Left out: 2 stiction_n /
     stiffness_n_per_m."""
     contact_force_n: ForceOrZero | None = None
     """Force above which the actuator counts as pushing, in N; it separates impacts. Left out: 0, or
     a thousandth of the actuator's largest force if it has a lag."""
-    peak_force_max_n: ForceBound | None = None
+    peak_force_max_n: Positive | None = None
     """Largest force that the part may see, in N. Left out: no limit."""
-    jump_max_m: LengthBound | None = None
+    jump_max_m: Positive | None = None
     """Largest jump, travel above the reference's speed in one slip, in m. Left out: no limit."""
-    release_velocity_max_m_per_s: Speed | None = None
+    release_velocity_max_m_per_s: Positive | None = None
     """Largest velocity at release, in m/s. Left out: no limit."""
