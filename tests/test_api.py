@@ -405,7 +405,9 @@ def test_figures_follow_from_a_full_trace(rough):
     pushes = np.diff(np.r_[0, (force > 0).astype(int)]) == 1
     assert run.metrics.impacts == pushes.sum()
     loose = run.trace["position_m"] > 2 * 450.0 / 3.6e7
-    assert run.metrics.time_to_breakaway_s == pytest.approx(run.trace["t_s"][loose.argmax()])
+    after = loose.argmax()
+    before_s, after_s = run.trace["t_s"][after - 1 : after + 1]
+    assert before_s < run.metrics.time_to_breakaway_s <= after_s
     assert np.isnan(run.metrics.time_to_release_s)
     assert run.metrics.to_dict()["time_to_release_s"] is None
 

@@ -199,7 +199,9 @@ def sliding(disturbance, samples, seed=0):
         reference=bk.StepReference(distance_m=400.0),
         disturbance=disturbance,
         controller=bk.Pid(gains=bk.Gains(kp_n_per_m=1.25, ki_n_per_m_s=0.0, kd_n_s_per_m=0.0)),
-        timing=bk.Timing(duration_s=samples * PERIOD_S, control_period_s=PERIOD_S),
+        timing=bk.Timing(
+            duration_s=samples * PERIOD_S, control_period_s=PERIOD_S, steps_per_period=1
+        ),
         trace=bk.Trace(every_samples=1),
     )
 

@@ -13,6 +13,7 @@ from tests.scenario.conftest import tag_of
 
 import breakaway as bk
 from breakaway.base.text import shown
+from breakaway.run.resolution import at_steps
 
 NASTY = [
     None,
@@ -107,15 +108,13 @@ def check_refusal(site, value, message):
 
 
 def shortened(scenario):
-    timing = scenario.timing
-    steps = min(timing.steps_per_period, 4)
-    return scenario.with_(
+    short = scenario.with_(
         {
-            "timing.duration_s": min(scenario.samples, 20) * timing.control_period_s,
-            "timing.steps_per_period": steps,
+            "timing.duration_s": min(scenario.samples, 20) * scenario.timing.control_period_s,
             "trace.every_samples": 1,
         }
     )
+    return at_steps(short, min(short.steps_per_period, 4))
 
 
 def try_value(site, value):

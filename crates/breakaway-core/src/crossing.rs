@@ -30,9 +30,11 @@ impl Function<3, 1> for Crossing {
     fn of<R: Real>([d, p, q]: [R; 3]) -> [R; 1] {
         let mut share = R::select(R::zero().lt(q), R::one(), R::zero());
         for _ in 0..8 {
-            let slope = (q + q).mul_add(share, p);
-            let beyond = q.mul_add(share, p).mul_add(share, -d);
-            share = share - beyond / slope;
+            let so_far = q.mul_add(share, p).named("per_share_m");
+            let beyond = so_far.mul_add(share, -d).named("beyond_m");
+            let slope = q.mul_add(share, so_far).named("slope_m");
+            let too_far = (beyond / slope).named("too_far_share");
+            share = (share - too_far).named("crossing_share");
         }
         [share.clamp(R::zero(), R::one())]
     }
@@ -43,9 +45,9 @@ impl<R: Real> Motion<R> {
     /// elsewhere.
     #[inline(always)]
     pub fn share_at(&self, place_m: R, needed: R::Mask) -> R {
-        let (d, h) = (place_m - self.position_m, self.duration_s);
-        let q = R::constant(0.5) * h * self.change_m_per_s;
-        let from = [d, h * self.velocity_m_per_s, q];
+        let (d, h) = ((place_m - self.position_m).named("to_place_m"), self.duration_s);
+        let q = (R::constant(0.5) * h * self.change_m_per_s).named("half_gained_m");
+        let from = [d, (h * self.velocity_m_per_s).named("coasted_m"), q];
         let [share] = R::renewed::<Crossing, 3, 1>(needed, [R::one()], from);
         share
     }

@@ -453,7 +453,7 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
         state.velocity_m_per_s = (two_v - v).named("velocity_m_per_s");
         let (held_n, end_m) =
             (self.factors.joint_force * joint_force_n, self.joint.engagement_length_m());
-        let change = state.velocity_m_per_s - v;
+        let change = (state.velocity_m_per_s - v).named("change_m_per_s");
         let leaves = at.engaged & end_m.le(state.position_m);
         let motion = Motion {
             position_m: x,
@@ -461,9 +461,9 @@ impl<R: Real, L: Law<R> + Copy> Plant<'_, R, L> {
             change_m_per_s: change,
             duration_s: k + k,
         };
-        let rest = R::one() - motion.share_at(end_m, leaves);
+        let rest = (R::one() - motion.share_at(end_m, leaves)).named("free_share");
         let gained = ((rest + rest) * (at.q * joint_force_n)).named("gained_m_per_s");
-        let further_m = k * rest * gained;
+        let further_m = (k * rest * gained).named("further_m");
         let held_m = R::select(leaves, end_m - x, k * two_v);
         state.position_m = state.position_m + further_m;
         state.velocity_m_per_s = state.velocity_m_per_s + gained;

@@ -20,8 +20,10 @@ Array = NDArray[np.float64]
 OF_OSCILLATION = 0.3
 """Longest step over 1 / omega, omega^2 = k_e / m + k_c (1 / m + 1 / m_face), of a part between its
 bristles and its contact with tool or tip; k_c is 0 where there is no contact."""
-OF_JUMPING = 0.1
+OF_JUMPING = 0.05
 """The same for laws whose friction drops at once: a step errs by its own length when it does."""
+OF_PERIOD = 0.25
+"""For these laws too, longest step over the control period: controllers decide by what they see."""
 OF_TOOL = 0.15
 """Longest step over sqrt(mass / stiffness) of the tool, whose impacts make the peaks."""
 OF_TIP = 0.3
@@ -123,6 +125,8 @@ def _of_part_s(scenario: Scenario, number: _Numbers) -> Iterator[Array]:
         square = square + number("joint.stiffness_n_per_m") / mass
         rate = rate + number("joint.damping_n_s_per_m") / mass
     jumps = rigid or isinstance(joint, TwoRegion)
+    if jumps:
+        yield OF_PERIOD * number("timing.control_period_s")
     with np.errstate(divide="ignore"):
         oscillation_s = (OF_JUMPING if jumps else OF_OSCILLATION) / np.sqrt(square)
         yield oscillation_s

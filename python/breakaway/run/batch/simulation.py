@@ -178,6 +178,8 @@ def run_columns(
         if "outcome" in names:
             codes[rows] = np.frombuffer(ended, dtype=np.uint8)
         done += len(rows)
+    for column in (codes, *metrics.values()):
+        column.setflags(write=False)
     return Batch(
         scenario=nominal,
         run_index=run_index,
