@@ -24,7 +24,7 @@ STICTION_RATIO_MAX = 10.0
 
 REDRAWN_IN_TIME = (
     "disturbance: a factor that is redrawn by the clock breaks up what counts as one jump (one "
-    "part, var 0.3, every 1 ms: 0.667 mm became 0.067 mm) and lets waiting find the lowest of many "
+    "part, var 0.3, every 1 ms: 0.667 mm became 0.068 mm) and lets waiting find the lowest of many "
     "draws (friction of 450 N let go at 315.3 N within 4 s); friction varies along the way: "
     "disturbance.kind = 'field'"
 )
