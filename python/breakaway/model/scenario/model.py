@@ -87,7 +87,11 @@ def explain(error: ValidationError, model: type[BaseModel]) -> str:
 
     A field that would follow another one, which is not valid, has nothing wrong of its own.
     """
-    wrong = [detail for detail in error.errors() if detail["type"] != "default_factory_not_called"]
+    wrong = [
+        detail
+        for detail in error.errors()
+        if detail["type"] != "default_factory_not_called" and not _is_word_of_union(detail)
+    ]
     looked_at = wrong[:MOST_EXPLAINED]
     lines = [*dict.fromkeys(_line(detail, model) for detail in looked_at)]
     if len(wrong) > len(looked_at):
@@ -95,8 +99,14 @@ def explain(error: ValidationError, model: type[BaseModel]) -> str:
     return "\n".join(lines)
 
 
+def _is_word_of_union(detail: ErrorDetails) -> bool:
+    """Whether this is about a word that a number may be: the number's own error tells enough."""
+    return bool(detail["loc"]) and str(detail["loc"][-1]).startswith("literal[")
+
+
 def _line(detail: ErrorDetails, model: type[BaseModel]) -> str:
-    path = [brief(str(key)) for key in detail["loc"]]
+    keys = [str(key) for key in detail["loc"]]
+    path = [brief(key) for key in keys if not key.startswith("constrained-")]
     value = detail.get("input")
     context = detail.get("ctx", {})
     kind = detail["type"]

@@ -33,7 +33,11 @@ from breakaway.model.scenario.normal_force import STEPS_PER_CYCLE
 from breakaway.model.scenario.reference import Reference, StepReference
 from breakaway.model.scenario.run import Limits, Timing, Trace
 from breakaway.model.scenario.sensor import Sensors, Watch
-from breakaway.model.scenario.steps import OF_OSCILLATION, steps_per_period
+from breakaway.model.scenario.steps import (
+    OF_OSCILLATION,
+    asking_for_most_steps,
+    steps_per_period,
+)
 
 SAMPLES_MAX = 4_000_000_000
 """Most integration steps of one run."""
@@ -116,8 +120,9 @@ class Scenario(Model):
         if steps > SAMPLES_MAX:
             raise ValueError(
                 f"timing.duration_s: {duration!r} takes {steps:.3g} integration steps, "
-                f"{in_period:,} in a control period, more than {SAMPLES_MAX:.0e}; shorten it, or "
-                "give timing.steps_per_period"
+                f"{in_period:,} in each timing.control_period_s = {period!r}, more than "
+                f"{SAMPLES_MAX:.0e} ({asking_for_most_steps(self)} ask for short ones); shorten "
+                "it, or give timing.steps_per_period"
             )
         whole = max(1, round(ratio))
         if abs(ratio - whole) > 1e-6:

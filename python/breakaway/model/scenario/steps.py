@@ -76,9 +76,17 @@ def longest_step_s(scenario: Scenario, columns: Mapping[str, Array] | None = Non
     """
     numbers = _Numbers(scenario, columns or {})
     longest_s = np.asarray(np.inf)
-    for needed_s in _needed_s(scenario, numbers):
-        longest_s = np.minimum(longest_s, needed_s)
+    with np.errstate(all="ignore"):  # numbers at the ends of their ranges
+        for _, needed_s in _needed_s(scenario, numbers):
+            longest_s = np.minimum(longest_s, needed_s)
     return longest_s
+
+
+def asking_for_most_steps(scenario: Scenario) -> str:
+    """Return the paths of the numbers that ask for the shortest step."""
+    with np.errstate(all="ignore"):
+        needed = {paths: float(s) for paths, s in _needed_s(scenario, _Numbers(scenario, {}))}
+    return min(needed, key=lambda paths: needed[paths])
 
 
 def steps_per_period(
@@ -95,55 +103,66 @@ def steps_per_period(
     1
 
     """
-    ratio = scenario.timing.control_period_s / longest_step_s(scenario, columns)
-    if scenario.timing.integrator == "rk4":
-        ratio = ratio * OF_RK4
-    needed = np.minimum(np.ceil(ratio * (1.0 - 1e-9)), GRADES[-1])
+    with np.errstate(all="ignore"):
+        ratio = scenario.timing.control_period_s / longest_step_s(scenario, columns)
+        if scenario.timing.integrator == "rk4":
+            ratio = ratio * OF_RK4
+        needed = np.fmin(np.ceil(ratio * (1.0 - 1e-9)), GRADES[-1])
     return np.asarray(GRADES[np.searchsorted(GRADES, needed)])
 
 
-def _needed_s(scenario: Scenario, number: _Numbers) -> Iterator[Array]:
+Needed = Iterator[tuple[str, Array]]
+"""Paths of numbers, and the step in s that they ask for."""
+
+
+def _needed_s(scenario: Scenario, number: _Numbers) -> Needed:
     joint, actuator = scenario.joint, scenario.actuator
     yield from _of_part_s(scenario, number)
     if isinstance(actuator, FeedAxis):
         yield from _of_faces_s(actuator, number)
     if isinstance(actuator, ForceActuator):
-        yield OF_LAG / (2.0 * np.pi * number("actuator.bandwidth_hz"))
+        path = "actuator.bandwidth_hz"
+        yield path, OF_LAG / (2.0 * np.pi * number(path))
     normal = joint.normal_force
     for name in ("vibration", "transverse"):
         if normal is not None and getattr(normal, name) is not None:
-            yield 1.0 / (STEPS_PER_CYCLE * number(f"joint.normal_force.{name}.frequency_hz"))
+            path = f"joint.normal_force.{name}.frequency_hz"
+            yield path, 1.0 / (STEPS_PER_CYCLE * number(path))
 
 
-def _of_part_s(scenario: Scenario, number: _Numbers) -> Iterator[Array]:
+def _of_part_s(scenario: Scenario, number: _Numbers) -> Needed:
     joint, mass = scenario.joint, number("part.mass_kg")
     square, rate = _contact_rates(scenario.actuator, mass, number)
     if rigid := not np.isfinite(joint.stiffness_n_per_m):
         length_m, stiction_n = number("joint.engagement_length_m"), number("joint.stiction_n")
-        yield OF_SLIP * np.sqrt(2.0 * mass * length_m / stiction_n)
+        slip_s = OF_SLIP * np.sqrt(2.0 * mass * length_m / stiction_n)
+        yield "part.mass_kg, joint.engagement_length_m, joint.stiction_n", slip_s
     else:
         square = square + number("joint.stiffness_n_per_m") / mass
         rate = rate + number("joint.damping_n_s_per_m") / mass
     jumps = rigid or isinstance(joint, TwoRegion)
     if jumps:
-        yield OF_PERIOD * number("timing.control_period_s")
-    with np.errstate(divide="ignore"):
-        oscillation_s = (OF_JUMPING if jumps else OF_OSCILLATION) / np.sqrt(square)
-        yield oscillation_s
-        yield np.maximum(OF_DAMPING / rate, LEAST * oscillation_s)
+        yield "timing.control_period_s", OF_PERIOD * number("timing.control_period_s")
+    oscillation_s = (OF_JUMPING if jumps else OF_OSCILLATION) / np.sqrt(square)
+    touching = isinstance(scenario.actuator, FeedAxis)
+    contact = f", actuator.contact, {_face_path(scenario.actuator)}" if touching else ""
+    yield f"part.mass_kg, joint.stiffness_n_per_m{contact}", oscillation_s
+    damping_s = np.maximum(OF_DAMPING / rate, LEAST * oscillation_s)
+    yield f"part.mass_kg, joint.damping_n_s_per_m{contact}", damping_s
     if isinstance(joint, StribeckJoint):
         fall_n = np.maximum(number("joint.stiction_n") - number("joint.coulomb_n"), 1e-300)
         fall_s = OF_FALL * mass * number("joint.stribeck_velocity_m_per_s") / fall_n
-        yield np.maximum(fall_s, LEAST * oscillation_s)
+        yield (
+            "part.mass_kg, joint.stribeck_velocity_m_per_s, joint.stiction_n, joint.coulomb_n",
+            np.maximum(fall_s, LEAST * oscillation_s),
+        )
 
 
 def _contact_rates(actuator: object, mass: Array, number: _Numbers) -> tuple[Array, Array]:
     """Give omega^2 and c / m of the contact of part and face."""
     if not isinstance(actuator, FeedAxis):
         return np.asarray(0.0), np.asarray(0.0)
-    stack = isinstance(actuator.tip, Piezo)
-    face = number("actuator.tip.tip_mass_kg" if stack else "actuator.tool_mass_kg")
-    per_mass = 1.0 / mass + 1.0 / face
+    per_mass = 1.0 / mass + 1.0 / number(_face_path(actuator))
     contact = "actuator.contact."
     return (
         per_mass * number(f"{contact}stiffness_n_per_m"),
@@ -151,13 +170,21 @@ def _contact_rates(actuator: object, mass: Array, number: _Numbers) -> tuple[Arr
     )
 
 
-def _of_faces_s(axis: FeedAxis, number: _Numbers) -> Iterator[Array]:
+def _face_path(actuator: object) -> str:
+    """Give the path of the mass that touches the part: the tip of a stack, or the tool."""
+    stack = isinstance(actuator, FeedAxis) and isinstance(actuator.tip, Piezo)
+    return "actuator.tip.tip_mass_kg" if stack else "actuator.tool_mass_kg"
+
+
+def _of_faces_s(axis: FeedAxis, number: _Numbers) -> Needed:
     """Tool between axis and contact or stack; tip between stack and contact."""
-    axis_n_per_m = number("actuator.stiffness_n_per_m")
-    contact_n_per_m = number("actuator.contact.stiffness_n_per_m")
-    before_tool = contact_n_per_m
+    contact = "actuator.contact.stiffness_n_per_m"
+    before = contact
     if isinstance(axis.tip, Piezo):
-        before_tool = number("actuator.tip.stiffness_n_per_m")
-        tip_kg = number("actuator.tip.tip_mass_kg")
-        yield OF_TIP * np.sqrt(tip_kg / (before_tool + contact_n_per_m))
-    yield OF_TOOL * np.sqrt(number("actuator.tool_mass_kg") / (axis_n_per_m + before_tool))
+        before = "actuator.tip.stiffness_n_per_m"
+        mass = "actuator.tip.tip_mass_kg"
+        tip_s = OF_TIP * np.sqrt(number(mass) / (number(before) + number(contact)))
+        yield f"{mass}, {before}, {contact}", tip_s
+    mass, spring = "actuator.tool_mass_kg", "actuator.stiffness_n_per_m"
+    tool_s = OF_TOOL * np.sqrt(number(mass) / (number(spring) + number(before)))
+    yield f"{mass}, {spring}, {before}", tool_s
