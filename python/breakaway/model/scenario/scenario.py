@@ -63,7 +63,7 @@ class Scenario(Model):
     >>> scenario.with_({"joint.stiction_n": -450})
     Traceback (most recent call last):
         ...
-    breakaway.errors.ScenarioError: joint.stiction_n: -450 is not > 0; give a number > 0 and ... in N
+    breakaway.errors.ScenarioError: joint.stiction_n: -450 is not > 0; give a number > 0 and ...
 
     """
 
