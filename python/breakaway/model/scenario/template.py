@@ -46,7 +46,7 @@ def scenario_template(scenario: Scenario) -> str:
     >>> lines = text.splitlines()
     >>> at = lines.index("stiction_n = 450.0")
     >>> lines[at - 1]
-    '# F_s0, the force that breaks the joint loose at the seat, in N. A number > 0 and <= 1e+09.'
+    '# F_s0, the force that breaks the joint loose at the seat, ... A number > 0 and <= 1e+09.'
     >>> "# residual_n =" in lines
     True
 
