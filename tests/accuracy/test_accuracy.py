@@ -11,7 +11,7 @@ from tests.accuracy.independent import LAWS, build, is_known, solve
 from tests.accuracy.kinds import KINDS, kind_of
 from tests.accuracy.reach import missed
 from tests.accuracy.scenarios import draw_case
-from tests.accuracy.steps import at_steps
+from tests.accuracy.steps import at_steps, steps_of
 from tests.accuracy.table import report
 from tests.accuracy.verdict import State, Verdict, judge
 
@@ -94,6 +94,13 @@ def test_peak_of_an_impact(tool_kg, contact_n_per_m):
     scenario = impact_scenario(tool_kg, contact_n_per_m, 2e-4)
     enough = round(2e-4 / (0.02 * sqrt(tool_kg / contact_n_per_m))) + 1
     assert strike(scenario, enough).error < 2e-3
+
+
+@pytest.mark.parametrize("period_s", [1e-5, 1e-3])
+@pytest.mark.parametrize("tool_kg", [min(TOOLS_KG), max(TOOLS_KG)])
+def test_peak_of_an_impact_at_the_default_steps(tool_kg, period_s):
+    scenario = impact_scenario(tool_kg, max(CONTACTS_N_PER_M), period_s)
+    assert strike(scenario, steps_of(scenario)).error < 2e-3
 
 
 def test_too_few_steps_miss_the_peak_of_an_impact():

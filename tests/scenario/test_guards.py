@@ -19,10 +19,12 @@ def refused(scenario, changes, *words, **fields):
 
 def test_a_step_that_does_not_resolve_the_bristle(paper):
     slow = {"timing.control_period_s": 1e-3, "disturbance.hold_s": 1e-3}
-    refused(paper, slow, "timing.steps_per_period: 1", "0.001", "give 20 or more")
+    assert paper.with_(slow).steps_per_period == 48
+    stated = paper.with_({"timing.steps_per_period": 1})
+    refused(stated, slow, "timing.steps_per_period: 1", "0.001", "give 20 or more")
     finer = paper.with_({**slow, "timing.steps_per_period": 20})
     assert finer.timing.steps_per_period == 20
-    refused(paper, {"timing.integrator": "rk4"}, "rk4 is explicit", "give 3 or more")
+    refused(stated, {"timing.integrator": "rk4"}, "rk4 is explicit", "give 3 or more")
 
 
 def test_the_guard_keeps_a_stuck_joint_stuck(paper):

@@ -247,6 +247,7 @@ def test_resolving_keeps_what_is_given(paper):
         "limits.breakaway_travel_m": 1e-4,
         "limits.contact_force_n": 2.0,
         "controller.gains": GIVEN,
+        "timing.steps_per_period": 1,
     }
     explicit = paper.with_(given_values)
     assert bk.resolve(explicit) == explicit
@@ -386,12 +387,13 @@ def conforms(value, schema, root):
     if "$ref" in schema:
         assert set(schema) <= {"$ref", "description", "default"}
         return conforms(value, root["$defs"][schema["$ref"].removeprefix("#/$defs/")], root)
-    about = {"title", "description", "default", "discriminator", "$defs"}
+    if "type" in schema and not is_of_type(value, schema["type"]):
+        return False  # bounds are for values of the type
+    about = {"title", "description", "default", "discriminator", "$defs", "type"}
     for word, rule in schema.items():
         if word in about or word in ("properties", "additionalProperties"):
             continue
         checks = {
-            "type": lambda rule=rule: is_of_type(value, rule),
             "enum": lambda rule=rule: value in rule,
             "const": lambda rule=rule: value == rule,
             "anyOf": lambda rule=rule: any(conforms(value, option, root) for option in rule),

@@ -79,7 +79,6 @@ mod tests {
             for share in [0.02, 0.3, 0.9, 1.0_f64] {
                 let t = share * h;
                 let found = motion.share_at(v * t + 0.5 * a * t * t, true);
-
                 assert!((found - share).abs() < tolerance, "{v} {a} {share} {found}");
                 assert!((motion.velocity_after(share) - (v + a * t)).abs() < 1e-15);
             }

@@ -181,8 +181,6 @@ pub struct Sample<R> {
     pub period_s: R,
     /// r at the sample, m.
     pub reference_m: R,
-    /// Speed that was asked of the part, m/s: that of the reference, or of the feed.
-    pub commanded_m_per_s: R,
     /// x at the sample, m.
     pub position_m: R,
     /// v at the sample, m/s.
@@ -289,7 +287,6 @@ impl<R: Real> Extraction<R> {
             time_s,
             period_s: self.timing.control_period_s,
             reference_m: setpoint.position_m,
-            commanded_m_per_s,
             position_m: before.position_m,
             velocity_m_per_s: before.velocity_m_per_s,
             bristle_m: before.bristle_m,

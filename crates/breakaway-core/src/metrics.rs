@@ -255,10 +255,10 @@ impl<R: Real> Metrics<R> {
     }
 
     /// Counts a sample for the groups that are wanted, unless the run has left its bounds. What
-    /// happens within its period counts [`Metrics::seeing`].
+    /// happens within its period is counted by [`Metrics::seeing`], step by step until one leaves them.
     ///
     /// The sample that leaves them still counts for the largest error and force, so that these tell
-    /// why the run diverged; for nothing else. Out of bounds everything that is summed becomes zero,
+    /// why the run diverged; for nothing else here. Out of bounds everything that is summed becomes zero,
     /// here and once: cheaper than keeping every sum from a change. Groups do not touch each other:
     /// what one counts has the same bits whether others are wanted or not.
     #[inline(always)]

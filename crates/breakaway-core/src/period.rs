@@ -78,7 +78,7 @@ pub struct Stretch<R> {
     pub motion: Motion<R>,
     /// x at its end, m.
     pub next_position_m: R,
-    /// Speed that was asked of the part, m/s.
+    /// Speed that was asked of the part, m/s: that of the reference, or of the feed.
     pub commanded_m_per_s: R,
     /// F in N.
     pub force_n: R,

@@ -39,7 +39,7 @@ class Accuracy(OneLine):
     def __repr__(self) -> str:
         name, moved = self.worst
         worst = f"{name} is {100 * moved:.2g} % off" if moved else "nothing moves"
-        wanted = "more steps than were tried" if self.wanted_steps is None else self.wanted_steps
+        wanted = "not found" if self.wanted_steps is None else self.wanted_steps
         return f"<accuracy at {self.asked_steps} steps: {worst}; wanted: {wanted}>"
 
     @property
@@ -116,8 +116,9 @@ def check_accuracy(
     Returns
     -------
     Accuracy
-        `settled` is false where a run of 3e8 integration steps still moved a metric by more than a
-        thousandth: motion that is chaotic does not settle at any steps.
+        `settled` is false where a metric still moved by more than a thousandth at 3e8 integration
+        steps, or where twice the scenario's own steps would be more than that, so that there is one
+        level: motion that is chaotic does not settle at any steps.
 
     Raises
     ------

@@ -112,9 +112,9 @@ def _reference_does_not_fit(scenario: Scenario) -> Iterator[str]:
 
 
 def _steps_are_coarse(scenario: Scenario) -> Iterator[str]:
-    """Compare with what "auto" would take; the paper's own scenarios are named for their loop."""
+    """Compare with what "auto" would take."""
     steps, wanted = scenario.steps_per_period, int(steps_per_period(scenario))
-    if steps < wanted and not scenario.name.startswith("paper_"):
+    if steps < wanted:
         yield (
             f"timing.steps_per_period = {steps} is coarse: part and rig ask for {wanted}, and with "
             "fewer metrics may be more than 1 % off; give 'auto', or see `breakaway run "

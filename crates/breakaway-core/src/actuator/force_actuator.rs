@@ -12,8 +12,8 @@ parameters! {
     /// ```
     ///
     /// Lag and limit are stepped exactly for a held command, also where the one follows the other
-    /// within a step; the part feels the mean of the force at both ends of the step. A fast hydraulic, voice-coil or
-    /// pneumatic drive; f is the frequency at which the force is 3 dB down.
+    /// within a step; the part feels the mean of the force at both ends of the step. A fast hydraulic,
+    /// voice-coil or pneumatic drive; f is the frequency at which the force is 3 dB down.
     pub struct ForceActuator {
         /// F_max in N.
         pub force_max_n,

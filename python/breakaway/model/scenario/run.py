@@ -27,9 +27,9 @@ class Timing(Model):
     integrator: Literal["linearly_implicit_midpoint", "rk4"] = "linearly_implicit_midpoint"
     """How the plant is stepped; rk4 is for checks: it is explicit and needs shorter steps."""
     steps_per_period: Annotated[int, Field(ge=1, le=100_000)] | Literal["auto"] = "auto"
-    """Integration steps in a control period. "auto": as many as part and rig need for metrics
-    within 1 % of those of ever finer steps. Steps longer than 0.3 sqrt(mass / stiffness) s, or a
-    fifteenth of that for rk4, are refused."""
+    """Integration steps in a control period. "auto": as many as part and rig ask for, which mostly
+    puts metrics within 1 % of those of ever finer steps. Stated steps that are longer than 0.3
+    sqrt(mass / stiffness) s, or a fifteenth of that for rk4, are refused."""
 
 
 class Trace(Model):

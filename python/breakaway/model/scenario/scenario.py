@@ -35,6 +35,7 @@ from breakaway.model.scenario.run import Limits, Timing, Trace
 from breakaway.model.scenario.sensor import Sensors, Watch
 from breakaway.model.scenario.steps import (
     OF_OSCILLATION,
+    OF_RK4,
     asking_for_most_steps,
     steps_per_period,
 )
@@ -148,7 +149,7 @@ class Scenario(Model):
         longest_s = OF_OSCILLATION * sqrt(m / k_e)
         rule = f"{OF_OSCILLATION:g} sqrt(part.mass_kg / joint.stiffness_n_per_m)"
         if timing.integrator == "rk4":
-            longest_s, rule = longest_s / 15, f"{rule} / 15, because rk4 is explicit,"
+            longest_s, rule = longest_s / OF_RK4, f"{rule} / {OF_RK4:g}, because rk4 is explicit,"
             damping = self.joint.damping_n_s_per_m
             if damping * longest_s > m:
                 longest_s, rule = m / damping, "part.mass_kg / joint.damping_n_s_per_m"

@@ -19,7 +19,10 @@ Array = NDArray[np.float64]
 
 OF_OSCILLATION = 0.3
 """Longest step over 1 / omega, omega^2 = k_e / m + k_c (1 / m + 1 / m_face), of a part between its
-bristles and its contact with tool or tip; k_c is 0 where there is no contact."""
+bristles and its contact with tool or tip."""
+OF_FORCED = 0.15
+"""The same where a force drives the part, without a contact: when it breaks loose decides how far
+it gets, and so counts more."""
 OF_JUMPING = 0.05
 """The same for laws whose friction drops at once: a step errs by its own length when it does."""
 OF_PERIOD = 0.25
@@ -32,7 +35,7 @@ OF_DAMPING = 0.6
 """Longest step over mass / damping of the part."""
 OF_FALL = 1.0
 """Longest step over m v_s / (F_s - F_c), in which friction falls as the part breaks loose."""
-LEAST = 1.0 / 8.0
+LEAST = 1.0 / 16.0
 """However fast friction falls or damping acts, steps need not be shorter than this share of what
 oscillations ask for: what is faster is over at once, and the part moves on at its own pace."""
 OF_SLIP = 0.005
@@ -71,7 +74,7 @@ def longest_step_s(scenario: Scenario, columns: Mapping[str, Array] | None = Non
     --------
     >>> import breakaway as bk
     >>> f"{float(longest_step_s(bk.load_scenario('paper_as_computed'))):.3g}"
-    '5e-05'
+    '2.5e-05'
 
     """
     numbers = _Numbers(scenario, columns or {})
@@ -143,8 +146,9 @@ def _of_part_s(scenario: Scenario, number: _Numbers) -> Needed:
     jumps = rigid or isinstance(joint, TwoRegion)
     if jumps:
         yield "timing.control_period_s", OF_PERIOD * number("timing.control_period_s")
-    oscillation_s = (OF_JUMPING if jumps else OF_OSCILLATION) / np.sqrt(square)
     touching = isinstance(scenario.actuator, FeedAxis)
+    share = OF_JUMPING if jumps else OF_OSCILLATION if touching else OF_FORCED
+    oscillation_s = share / np.sqrt(square)
     contact = f", actuator.contact, {_face_path(scenario.actuator)}" if touching else ""
     yield f"part.mass_kg, joint.stiffness_n_per_m{contact}", oscillation_s
     damping_s = np.maximum(OF_DAMPING / rate, LEAST * oscillation_s)
