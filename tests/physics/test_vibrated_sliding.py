@@ -27,8 +27,10 @@ STACK = bk.Piezo(
     capacitance_f=1e-6,
     voltage_max_v=120.0,
     current_max_a=10.0,
-    amplifier_bandwidth_hz=1e5,
+    amplifier_bandwidth_hz=2e4,
 )
+"""The amplifier is slow beside a control period, so the tip does not follow the stairs of commands
+that are held for one: the closed forms know a sine only."""
 
 
 def sliding(share, backlash_m=0.0):
@@ -83,7 +85,7 @@ def mean_friction_n(scenario):
 
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7, 0.9, 1.2])
 def test_mean_friction_of_a_gripped_part_is_that_of_the_arcsine(share):
-    """Found: within 8.1e-5."""
+    """Found: within 7.1e-5."""
     expected = FRICTION_N * (2 / pi) * asin(min(share, 1.0))
     assert mean_friction_n(sliding(share)) == pytest.approx(expected, rel=2e-4)
 
@@ -92,7 +94,7 @@ def test_a_tip_that_only_pushes_leaves_its_part_behind():
     """It stops where cos p = -s and waits until the tip is back; friction acts while it moves.
 
     Then it falls with the force of axis, stack and contact, as the tip draws back: by a t^2 / 2
-    through 3 / k. Found: within 1.8e-4.
+    through 3 / k. Found: within 1.0e-4.
     """
     share, omega = 0.5, 2 * pi * FREQUENCY_HZ
     stops = pi - acos(share)

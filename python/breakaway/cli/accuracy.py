@@ -9,7 +9,6 @@ from breakaway.base.one_line import counted
 from breakaway.cli.quantity import show_value, split_unit
 from breakaway.cli.sheet import Sheet
 from breakaway.cli.show import busy
-from breakaway.run.accuracy import STEPS_MAX
 
 if TYPE_CHECKING:
     from breakaway.model.scenario import Scenario
@@ -46,6 +45,8 @@ def _percent(error: float) -> str:
 
 
 def _verdict(accuracy: Accuracy) -> str:
+    from breakaway.run.accuracy import STEPS_MAX
+
     finest = max(accuracy.levels)
     if len(accuracy.levels) == 1:
         return (
