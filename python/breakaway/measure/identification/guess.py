@@ -76,11 +76,14 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     _check_dissipation(log, force, v)
     held = np.zeros_like(force) if mass_kg is None else mass_kg * a
     columns = np.column_stack([a, v, np.sign(v), np.ones_like(v)])[moving]
+    if np.all(columns[:, 2] == columns[0, 2]):
+        columns = columns[:, :3]
     size = float(np.sqrt(np.mean(force**2)))
     inertia = mass_kg if mass_kg is not None else _inertia(columns, force[moving], size)
     if mass_kg is not None or inertia == 0.0:
         columns[:, 0] = 0.0
     found = np.linalg.lstsq(columns, (force - held)[moving], rcond=None)[0]
+    found = np.append(found, 0.0)[:4]
     coulomb = max(float(found[2]), 0.05 * size)
     fallback = 0.01 * size / max(float(np.std(a)), 1e-300)
     return Scales(

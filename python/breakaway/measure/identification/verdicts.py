@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,6 +13,13 @@ from numpy.typing import NDArray
 from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.record import Rows, RunSettings
+from breakaway.measure.identification.turns import (
+    RESOLVED_ROWS,
+    STILL,
+    broke_away,
+    find_turns,
+    short_slips,
+)
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
 
@@ -65,6 +73,17 @@ class Excitation:
         the noise of the position.
     both_directions : bool
         Whether at least 2 % of the moving rows go either way.
+    direction : int
+        1 or -1 where nearly all rows that move go one way, else 0.
+    broke_away : bool
+        Whether the force levels off anywhere: below breakaway it goes on rising with the way.
+    held_n : float
+        Half the range of the force; a joint that never broke away held at least that.
+    resting_n : float
+        Smallest force in the direction of motion while the part stands still, infinite if it never
+        does.
+    slips, slip_rows : int
+        Slips of a part that sticks in between, and the median rows of one; 0 without stick-slip.
 
     """
 
@@ -75,13 +94,25 @@ class Excitation:
     presliding_m: float
     noise_m: float
     both_directions: bool
+    direction: int
+    broke_away: bool
+    held_n: float
+    resting_n: float
+    slips: int
+    slip_rows: int
 
     def __str__(self) -> str:
+        never = "" if self.broke_away else f", never broke away under {self.held_n:.3g} N"
         return (
             f"excited: {self.slow_speed_m_per_s:.3g} to {self.fast_speed_m_per_s:.3g} m/s, "
             f"{self.reversals} reversals, {self.rests} rests that end in motion, presliding of "
-            f"{self.presliding_m:.2g} m against {self.noise_m:.2g} m of noise"
+            f"{self.presliding_m:.2g} m against {self.noise_m:.2g} m of noise{never}"
         )
+
+    @property
+    def sticks_and_slips(self) -> bool:
+        """Whether the part slips in so few rows that its motion is not resolved."""
+        return 0 < self.slip_rows < RESOLVED_ROWS
 
     @property
     def speed_ratio(self) -> float:
@@ -109,6 +140,12 @@ def excitation(rows: Rows, places: Places) -> Excitation:
     moving = speed > MOVING * top
     sign = np.sign(v[moving])
     slow, fast = (float(q) for q in np.quantile(speed[moving], [0.05, 0.95]))
+    both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
+    direction = 0 if both else int(np.sign(np.median(sign)))
+    force_noise = noise_floor(rows.log, "force_n")
+    noise_n = max(force_noise.white, force_noise.quantization)
+    slips, slip_rows = short_slips(v, force)
+    still = speed < STILL * top
     return Excitation(
         slow_speed_m_per_s=slow,
         fast_speed_m_per_s=fast,
@@ -116,7 +153,13 @@ def excitation(rows: Rows, places: Places) -> Excitation:
         rests=_rests(moving),
         presliding_m=_presliding(x, v, force, top),
         noise_m=noise_m,
-        both_directions=bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE),
+        both_directions=both,
+        direction=direction,
+        broke_away=broke_away(find_turns(x, v), force, noise_m, noise_n),
+        held_n=0.5 * float(np.ptp(np.quantile(force, [0.001, 0.999]))),
+        resting_n=float(np.min(direction * force[still])) if still.any() else math.inf,
+        slips=slips,
+        slip_rows=slip_rows,
     )
 
 
