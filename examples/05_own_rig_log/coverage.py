@@ -35,18 +35,13 @@ def judged(family: str, law: str, case: int) -> Judged:
         return Judged(family, ((REFUSED, "not told"),), ())
     out = []
     for one in (*found.estimates, *found.combined):
-        inside = one.low <= true_value(truth, one.name) <= one.high
+        inside = one.low <= getattr(truth, one.name) <= one.high
         verdict = ("inside" if inside else "outside") if one.identifiable else "not told"
         out.append((one.name, verdict))
     fitted = {one.name for one in found.estimates}
     held = [one.parameter for one in found.verdicts if one.parameter not in fitted]
     out += [(name, "not told") for name in held if hasattr(truth, name)]
     return Judged(family, tuple(out), ())
-
-
-def true_value(truth: Truth, name: str) -> float:
-    """Return a parameter of the truth, or a sum of some."""
-    return sum(float(getattr(truth, part)) for part in name.split(" + "))
 
 
 def work(args: argparse.Namespace) -> list[tuple[str, str, int]]:

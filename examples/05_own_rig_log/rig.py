@@ -30,6 +30,21 @@ class Truth(Levels):
     law: str = "lugre"
 
     @property
+    def stiction_n(self) -> float:
+        """F_s."""
+        return self.coulomb_n * self.stiction_ratio
+
+    @property
+    def coulomb_plus_offset_n(self) -> float:
+        """What a pull at low friction shows."""
+        return self.coulomb_n + self.offset_n
+
+    @property
+    def stiction_plus_offset_n(self) -> float:
+        """What a pull shows at breakaway."""
+        return self.stiction_n + self.offset_n
+
+    @property
     def deflection_m(self) -> float:
         """The deflection at which the joint slides."""
         return self.coulomb_n / self.stiffness_n_per_m

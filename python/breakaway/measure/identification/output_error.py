@@ -42,7 +42,7 @@ class Problem:
     """One record, one layout of parameters, and the channel whose error is made small.
 
     Residuals are divided by ``scale``, so that they are near 1 where the model is as good as the
-    measurement.
+    measurement, and times ``counted``, 0 for rows that are left out.
     """
 
     record: RigRecord
@@ -51,6 +51,7 @@ class Problem:
     measured: Array
     scale: float
     every: int = 1
+    counted: Array | float = 1.0
     stop: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -75,7 +76,11 @@ class Problem:
 
     def _residual(self, predicted: Array) -> Array:
         with np.errstate(over="ignore", invalid="ignore"):
-            return _finite((predicted - self.measured[:: self.every]) / self.scale)
+            return _finite((predicted - self.measured[:: self.every]) / self.scale * self._counted)
+
+    @property
+    def _counted(self) -> Array | float:
+        return self.counted[:: self.every] if isinstance(self.counted, np.ndarray) else 1.0
 
     def residual_and_slopes(self, internal: Array) -> tuple[Array, Array]:
         """Return the residual and its derivatives with respect to the internal parameters."""
@@ -90,6 +95,7 @@ class Problem:
         with np.errstate(over="ignore", invalid="ignore"):
             factor = layout.slope(internal) / self.scale
             by_row = slopes.reshape(len(value), len(layout.free)) * factor
+            by_row *= np.reshape(self._counted, (-1, 1))
             return self._residual(value), np.nan_to_num(by_row, posinf=0.0, neginf=0.0)
 
     def sums_of_squares(self, internal: Array, threads: int = 0) -> Array:

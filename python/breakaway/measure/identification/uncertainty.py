@@ -17,6 +17,9 @@ from breakaway.measure.logs.log import Array
 LEVEL = 0.95
 """Confidence of all intervals."""
 
+HALF_WIDTH = float(norm.ppf(0.5 + 0.5 * LEVEL))
+"""Half an interval, in standard errors."""
+
 LONGEST_WINDOW = 0.1
 """Longest window of correlated residuals, as a share of the record."""
 
@@ -120,7 +123,7 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
 
 def interval(problem: Problem, internal: Array, place: int, error: float) -> tuple[float, float]:
     """Return the interval of a parameter, from the standard error of the internal one."""
-    half = float(norm.ppf(0.5 + 0.5 * LEVEL)) * error
+    half = HALF_WIDTH * error
     parameter = problem.layout.free[place]
     with np.errstate(over="ignore"):
         ends = parameter.external(np.array([internal[place] - half, internal[place] + half]))

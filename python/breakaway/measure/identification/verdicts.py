@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.identification.laws import Law
-from breakaway.measure.identification.record import Rows, RunSettings
+from breakaway.measure.identification.record import MotionKind, Rows, RunSettings
 from breakaway.measure.identification.turns import (
     RESOLVED_ROWS,
     STILL,
@@ -214,6 +214,14 @@ _LEFT_OUT = {
 }
 
 
+def _remedy(name: str, because: str) -> str:
+    """Return the experiment that would tell a parameter."""
+    for words, remedy in _REMEDIES_BY_REASON.items():
+        if words in because:
+            return remedy
+    return _REMEDIES.get(name, _MORE)
+
+
 def _by_error(one: Estimate, found: Mapping[str, Estimate]) -> Verdict:
     ratio = found.get("stiction_ratio")
     if one.name == "stribeck_velocity_m_per_s" and ratio and ratio.low < 1.0 < ratio.high:
@@ -221,7 +229,7 @@ def _by_error(one: Estimate, found: Mapping[str, Estimate]) -> Verdict:
         return Verdict(one.name, False, because, _SPEEDS)
     if one.identifiable:
         return Verdict(one.name, True, f"95 % interval {one.low:.4g} to {one.high:.4g}")
-    return Verdict(one.name, False, one.remark, _REMEDIES.get(one.name, _MORE))
+    return Verdict(one.name, False, one.remark, _remedy(one.name, one.remark))
 
 
 _MORE = "record for longer, with more reversals and more speeds"
@@ -243,6 +251,12 @@ _REMEDIES = {
     "elastic_share": "load the joint slowly back and forth up to breakaway",
     "mass_kg": "accelerate harder, or weigh the part and fix the mass (`fixed`, --fix)",
 }
+_REMEDIES_BY_REASON = {
+    "only one way": "let the part slide both ways, or fix the offset (`fixed`, --fix)",
+    "never": "load the joint until it slides, in both directions",
+    "stick-slip": "pull faster or through a stiffer drive until the part slides steadily, or sample "
+    f"each slip at {RESOLVED_ROWS} rows; `breakaway events` tells the force at which each one began",
+}
 
 
 def unexcited(
@@ -257,7 +271,7 @@ def unexcited(
 
     def hold(name: str, value: float, because: str) -> None:
         if name in names:
-            remedy = _REMEDIES.get(name, _MORE)
+            remedy = _remedy(name, because)
             verdict = Verdict(name, False, f"held at {value:g}: {because}", remedy)
             out[name] = (value, verdict)
 
@@ -275,13 +289,48 @@ def unexcited(
                 hold(name, 0.0, speeds)
         if settings.motion == "imposed":
             hold("damping_n_s_per_m", 0.0, speeds)
+    if not shown.broke_away:
+        hold("stiction_ratio", 1.0, "the part never broke away")
+        hold("stribeck_velocity_m_per_s", 1.0, "the part never broke away")
+        for name in names:
+            if name.startswith("viscous"):
+                hold(name, 0.0, "the part never slid")
     if not shown.both_directions:
-        hold("offset_n", 0.0, "the part slides only one way, so an offset looks like friction")
+        for name in ("offset_n", "offset_1_n"):
+            hold(name, 0.0, "the part slides only one way, so an offset looks like friction")
     if shown.presliding_m < PRESLIDING_QUANTA * shown.noise_m and settings.motion == "imposed":
         depth = f"presliding is {shown.presliding_m:.2g} m, the noise {shown.noise_m:.2g} m"
         hold("elastic_share", 0.5, depth)
         hold("damping_n_s_per_m", 0.0, depth)
     return out
+
+
+def untold(
+    names: Sequence[str], shown: Excitation, motion: MotionKind, held: Sequence[str]
+) -> dict[str, str]:
+    """Return which fitted parameters a log cannot tell by the way it moves, and why."""
+    out: dict[str, str] = {}
+    if motion != "imposed":
+        return out
+    if not shown.both_directions and {"offset_n", "offset_1_n"} & set(held):
+        word = "plus" if shown.direction > 0 else "minus"
+        sum_only = f"the part slides only one way: only coulomb {word} offset is told"
+        out = {"coulomb_n": sum_only, "stiction_ratio": sum_only}
+    if not shown.broke_away:
+        bound = f"the part never broke away; it held at least {shown.held_n:.3g} N"
+        levels = [name for name in names if name.startswith(("coulomb", "stiction"))]
+        out |= dict.fromkeys(levels, bound)
+        rest = "the part never broke away, so a bristle that is loaded looks like an offset"
+        out |= {name: rest for name in names if name.startswith("offset")}
+        loss = "below breakaway, friction that slips in part looks like a damper"
+        out["damping_n_s_per_m"] = loss
+    if shown.sticks_and_slips:
+        slips = (
+            f"stick-slip: each of {shown.slips} slips is about {shown.slip_rows} rows, too few to "
+            "show how the part moves in it"
+        )
+        out |= dict.fromkeys(names, slips)
+    return {name: because for name, because in out.items() if name in names}
 
 
 def stiction_peak(found: Mapping[str, Estimate], verdict: Sequence[Verdict]) -> str:
