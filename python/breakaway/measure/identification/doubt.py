@@ -18,7 +18,7 @@ from breakaway.measure.identification.output_error import (
     minimize,
 )
 from breakaway.measure.identification.record import RunSettings, core_record
-from breakaway.measure.identification.turns import Turns, find_turns
+from breakaway.measure.identification.turns import Turns, find_turns, passages
 from breakaway.measure.identification.uncertainty import Covariance, covariance
 from breakaway.measure.identification.verdicts import NO_PEAK, Estimate
 from breakaway.measure.logs.log import Array
@@ -52,15 +52,19 @@ EVALUATIONS = 60
 
 @dataclass(frozen=True, eq=False)
 class Doubt:
-    """Why a law may not hold, and the covariance of the internal parameters that allows for it."""
+    """Why a law may not hold, and the covariance of the internal parameters that allows for it.
+
+    ``turns`` counts the stretches of motion in one direction.
+    """
 
     because: str
     known: Covariance
+    turns: int
 
     def judged(self, estimates: Sequence[Estimate]) -> list[Estimate]:
-        """Take back what acts about turns, and a peak that sliding does not show."""
+        """Take back what acts about turns, and a peak that sliding does not show twice."""
         ratio = next((one for one in estimates if one.name == "stiction_ratio"), None)
-        no_peak = ratio is not None and ratio.low < NO_PEAK
+        no_peak = self.turns < 2 or (ratio is not None and ratio.low < NO_PEAK)
         peak = ("stiction_ratio", "stribeck_velocity_m_per_s") if no_peak else ()
         return [
             replace(one, identifiable=False, remark=f"the law is in doubt: {self.because}")
@@ -101,7 +105,26 @@ def doubt(
         return None
     about = turns.since_m < ABOUT_TURNS * deflection
     about |= turns.rows_since < ROWS_ABOUT_TURNS
-    return Doubt(because, _widened(asked, loss, best, known, ~about))
+    return Doubt(because, _widened(asked, loss, best, known, ~about), turns.count)
+
+
+def events(asked: Prepared, settings: RunSettings, best: Array) -> dict[int, int]:
+    """Return in how many events of an imposed motion a parameter shows, by its place.
+
+    What acts about turns shows in each turn, the Stribeck term in each passage below twice its
+    speed.
+    """
+    if settings.motion != "imposed":
+        return {}
+    x, v = asked.rows.columns[:2, asked.places]
+    turns = find_turns(x, v).count
+    names = [one.name for one in asked.problem.layout.free]
+    out = {names.index(name): turns for name in BRISTLE if name in names}
+    if "stribeck_velocity_m_per_s" in names:
+        slow = 2.0 * asked.problem.layout.values(best)["stribeck_velocity_m_per_s"]
+        peak = ("stribeck_velocity_m_per_s", "stiction_ratio")
+        out |= {names.index(name): passages(v, slow) for name in peak if name in names}
+    return out
 
 
 def _deflection_m(values: dict[str, float], asked: Prepared) -> float:

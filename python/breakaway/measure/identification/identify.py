@@ -12,7 +12,7 @@ import numpy as np
 from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
-from breakaway.measure.identification.doubt import Doubt, doubt
+from breakaway.measure.identification.doubt import doubt, events
 from breakaway.measure.identification.identifiability import Prepared, prepare
 from breakaway.measure.identification.inertia_friction import identify_inertia_friction
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
@@ -43,6 +43,7 @@ from breakaway.measure.identification.uncertainty import (
     NOT_TOLD_FROM_0,
     Covariance,
     covariance,
+    few_events,
     interval,
 )
 from breakaway.measure.identification.together import sums, without_offset
@@ -270,13 +271,15 @@ class _Found:
         residual, slopes = problem.residual_and_slopes(best)
         weighted = _robust(self.loss, residual)
         known = covariance(weighted * residual, weighted[:, None] * slopes)
+        known = few_events(known, events(self.asked, self.settings, best))
         in_doubt = None
         if self.asked.excitation.broke_away:
             in_doubt = doubt(self.asked, self.law, self.settings, self.loss, best, known)
         known = known if in_doubt is None else in_doubt.known
         estimates = self._estimates(best, known)
+        estimates = estimates if in_doubt is None else in_doubt.judged(estimates)
         combined = self._combined(best, known, estimates)
-        estimates = self._judged(estimates, in_doubt)
+        estimates = self._judged(estimates)
         errors = residual * problem.scale
         rms = float(np.sqrt(np.mean(errors**2)))
         power = float(residual @ residual)
@@ -334,8 +337,8 @@ class _Found:
             return ()
         return sums(self.asked.problem.layout, best, known.matrix, shown, estimates)
 
-    def _judged(self, estimates: Sequence[Estimate], in_doubt: Doubt | None) -> list[Estimate]:
-        """Take back what the motion of the log, or a law in doubt, does not tell."""
+    def _judged(self, estimates: Sequence[Estimate]) -> list[Estimate]:
+        """Take back what the motion of the log does not tell."""
         shown = self.asked.excitation
         names = [one.name for one in estimates]
         held = [one.parameter for one in self.asked.held_back]
@@ -344,7 +347,7 @@ class _Found:
             replace(one, identifiable=False, remark=reasons[one.name])
             if one.name in reasons
             else one
-            for one in (estimates if in_doubt is None else in_doubt.judged(estimates))
+            for one in estimates
         ]
         values = {one.name: one.value for one in estimates}
         if self._goes_one_way and "coulomb_n" in values:

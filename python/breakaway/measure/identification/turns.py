@@ -68,27 +68,46 @@ def find_turns(x: Array, v: Array) -> Turns:
     return Turns(direction, stretch, way - way[first], np.arange(len(v)) - first)
 
 
-def broke_away(turns: Turns, force: Array, noise_m: float, noise_n: float) -> bool:
-    """Whether the force levels off in any stretch, as it does once a joint slides.
+def broke_away(
+    turns: Turns, force: Array, noise_m: float, noise_n: float
+) -> tuple[bool, bool] | None:
+    """Return whether the force levels off on the way up, and down, as it does once a joint slides.
 
     A joint that is only loaded gives a force that goes on rising with the way since the turn: by
-    more than a factor of 1.2 while the way doubles. True where no stretch is long enough to say.
+    more than a factor of 1.2 while the way doubles. None where no stretch is long enough to say.
     """
-    judged = False
+    judged, found = False, {1.0: False, -1.0: False}
     for number in range(turns.count):
         here = np.flatnonzero(turns.stretch == number)
-        way, turn = turns.since_m[here], here[0]
+        way = turns.since_m[here]
         if len(here) < FEWEST_ROWS or way[-1] < 10.0 * noise_m:
             continue
-        before = float(np.median(force[max(turn - 1, 0) : turn + 2]))
-        change = turns.direction[here] * (force[here] - before)
-        ways = way[-1] / 2.0 ** np.arange(7)
-        found = np.interp(ways, way, change)
-        told = found[1:] > max(PLATEAU_SHARE * float(change.max()), 10.0 * noise_n)
-        judged = judged or bool(told.any())
-        if np.any(found[:-1][told] < PLATEAU * found[1:][told] - 3.0 * noise_n):
-            return True
-    return not judged
+        levels = _levels_off(way, _change(turns, here, force), noise_n)
+        judged = judged or levels is not None
+        found[float(turns.direction[here[-1]])] |= bool(levels)
+    return (found[1.0], found[-1.0]) if judged else None
+
+
+def _change(turns: Turns, here: Whole, force: Array) -> Array:
+    """Return the force since a turn, in the direction of motion."""
+    before = float(np.median(force[max(here[0] - 1, 0) : here[0] + 2]))
+    change: Array = turns.direction[here] * (force[here] - before)
+    return change
+
+
+def _levels_off(way: Array, change: Array, noise_n: float) -> bool | None:
+    """Whether the force levels off in one stretch; None where it hardly changes."""
+    found = np.interp(way[-1] / 2.0 ** np.arange(7), way, change)
+    told = found[1:] > max(PLATEAU_SHARE * float(change.max()), 10.0 * noise_n)
+    if not told.any():
+        return None
+    return bool(np.any(found[:-1][told] < PLATEAU * found[1:][told] - 3.0 * noise_n))
+
+
+def passages(v: Array, slow_m_per_s: float) -> int:
+    """Return how often a part goes through speeds below a limit."""
+    slow = (np.abs(v) < slow_m_per_s).astype(int)
+    return int(np.count_nonzero(np.diff(slow) > 0) + slow[0])
 
 
 def short_slips(v: Array, force: Array) -> tuple[int, int]:
@@ -105,7 +124,7 @@ def short_slips(v: Array, force: Array) -> tuple[int, int]:
     if len(starts) < FEWEST_SLIPS or np.mean(speed < STILL * top) < 0.5:
         return 0, 0
     directions = np.sign(v[(starts + ends) // 2])
-    stuck = [bool(np.any(speed[a:b] < STILL * top)) for a, b in zip(ends[:-1], starts[1:])]
+    stuck = [bool(np.any(speed[a:b] < STILL * top)) for a, b in zip(ends[:-1], starts[1:], strict=True)]
     again = np.array(stuck) & (directions[1:] == directions[:-1])
     fall = directions * (force[np.maximum(starts - 1, 0)] - force[ends])
     if np.sum(again) < FEWEST_SLIPS - 1 or np.median(fall) < FALL * np.median(np.abs(force)):

@@ -72,7 +72,7 @@ class Excitation:
         Deflection of the joint before it slides, as far as the force and the motion show it, and
         the noise of the position.
     both_directions : bool
-        Whether at least 2 % of the moving rows go either way.
+        Whether at least 2 % of the moving rows go either way, and the part slides both ways.
     direction : int
         1 or -1 where nearly all rows that move go one way, else 0.
     broke_away : bool
@@ -140,10 +140,12 @@ def excitation(rows: Rows, places: Places) -> Excitation:
     moving = speed > MOVING * top
     sign = np.sign(v[moving])
     slow, fast = (float(q) for q in np.quantile(speed[moving], [0.05, 0.95]))
-    both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
-    direction = 0 if both else int(np.sign(np.median(sign)))
     force_noise = noise_floor(rows.log, "force_n")
     noise_n = max(force_noise.white, force_noise.quantization)
+    slides = broke_away(find_turns(x, v), force, noise_m, noise_n)
+    both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
+    both = both and (slides is None or slides[0] == slides[1])
+    direction = 0 if both else int(np.sign(np.median(sign)))
     slips, slip_rows = short_slips(v, force)
     still = speed < STILL * top
     return Excitation(
@@ -155,7 +157,7 @@ def excitation(rows: Rows, places: Places) -> Excitation:
         noise_m=noise_m,
         both_directions=both,
         direction=direction,
-        broke_away=broke_away(find_turns(x, v), force, noise_m, noise_n),
+        broke_away=slides is None or any(slides),
         held_n=0.5 * float(np.ptp(np.quantile(force, [0.001, 0.999]))),
         resting_n=float(np.min(direction * force[still])) if still.any() else math.inf,
         slips=slips,
@@ -316,6 +318,8 @@ def untold(
         word = "plus" if shown.direction > 0 else "minus"
         sum_only = f"the part slides only one way: only coulomb {word} offset is told"
         out = {"coulomb_n": sum_only, "stiction_ratio": sum_only}
+        load = "the part slides only one way, and how far its bristle was loaded is not known"
+        out |= dict.fromkeys(("stiffness_n_per_m", "damping_n_s_per_m", "elastic_share"), load)
     if not shown.broke_away:
         bound = f"the part never broke away; it held at least {shown.held_n:.3g} N"
         levels = [name for name in names if name.startswith(("coulomb", "stiction"))]
