@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import t as student
 
+from breakaway.measure.identification.faults.rig import rig_parameters
 from breakaway.measure.identification.guess import internal_guess, stand_in
 from breakaway.measure.identification.identifiability import Prepared
 from breakaway.measure.identification.laws import Law, LawName, Layout
@@ -159,7 +160,7 @@ def _rival(
     asked: Prepared, law: Law, settings: RunSettings, best: Array
 ) -> tuple[Problem, Sequence[Array], tuple[Array, Array]]:
     """Return the problem of the rival law, and starts near what was found."""
-    parameters = law.parameters(len(asked.spans))
+    parameters = (*law.parameters(len(asked.spans)), *rig_parameters(settings.motion))
     names = {one.name for one in parameters}
     held = {name: value for name, value in asked.neutral.items() if name in names}
     numbers = {**stand_in(law, settings, asked.sizes), **held}

@@ -43,6 +43,7 @@ class Scales:
     noise_m: float
     velocity_noise_m_per_s: float
     period_s: float
+    duration_s: float
 
     def stiffest(self, settings: RunSettings) -> float:
         """Return the largest stiffness in N/m that can be told, or simulated."""
@@ -61,7 +62,8 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
         The part never moves, or the force is 0 throughout.
 
     """
-    x, v, a, force = rows.columns[:4, chosen]
+    x, v, a = rows.columns[:3, chosen]
+    force = rows.driving_force_n[chosen]
     log, noise = rows.log, noise_floor(rows.log, "position_m")
     noise_m = max(noise.white, noise.quantization)
     travel, speed = float(np.ptp(x)), float(np.quantile(np.abs(v), 0.99))
@@ -98,6 +100,7 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
         noise_m=noise_m,
         velocity_noise_m_per_s=_velocity_noise(rows, noise_m),
         period_s=float(np.median(np.diff(log.t_s))),
+        duration_s=float(log.t_s[-1] - log.t_s[0]),
     )
 
 
@@ -162,6 +165,10 @@ def first_guess(parameter: Parameter, sizes: Scales, settings: RunSettings) -> t
         "elastic_share": (0.5, 0.7),
         "coulomb_slope_n_per_m": (0.0, 0.3 * slope),
         "spring_n_per_m": (0.0, 0.3 * slope),
+        "delay_s": (0.0, 0.0),
+        "drift_n_per_s": (0.0, 0.1 * sizes.force_n / sizes.duration_s),
+        "warming_per_s": (0.0, 0.1 / sizes.duration_s),
+        "backlash_m": (10.0 * sizes.noise_m, 5.0 * sizes.noise_m),
     }
     if parameter.name in known:
         return known[parameter.name]
@@ -181,6 +188,8 @@ def bounds_of(
         low, high = guess / REACH, guess * REACH
     if parameter.may_vanish:
         high = guess * REACH
+    if parameter.name == "warming_per_s":
+        low, high = -1.9 / sizes.duration_s, 1.9 / sizes.duration_s
     if parameter.name == "stiffness_n_per_m" and settings.motion != "imposed":
         high = sizes.stiffest(settings)
     return low, high

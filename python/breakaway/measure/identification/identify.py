@@ -318,6 +318,7 @@ class _Found:
                 self.law,
                 self.settings,
                 problem.layout.numbers(best),
+                delay_s=problem.layout.delay_s(best),
                 same=True,
             ),
             internals=Internals(problem, best, self.asked.bounds, known),

@@ -157,8 +157,9 @@ class Identification(OneLine):
                     "fixed={'mass_kg': ...}"
                 )
         rows = measured_rows(self.log if log is None else log, settings)
-        numbers = self.internals.problem.layout.numbers(self.internals.best)
-        return predict_rows(rows, spans, self.law, settings, numbers)
+        layout, best = self.internals.problem.layout, self.internals.best
+        numbers, delay_s = layout.numbers(best), layout.delay_s(best)
+        return predict_rows(rows, spans, self.law, settings, numbers, delay_s=delay_s)
 
     def profile(self, name: str) -> Profile:
         """Compute the profile likelihood of a parameter.

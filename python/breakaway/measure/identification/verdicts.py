@@ -132,7 +132,7 @@ class Verdict:
 
 def excitation(rows: Rows, places: Places) -> Excitation:
     """Measure what a log excites, in the rows at ``places``."""
-    x, v, _, force = rows.columns[:4, places]
+    x, v, force = *rows.columns[:2, places], rows.driving_force_n[places]
     noise = noise_floor(rows.log, "position_m")
     noise_m = max(noise.white, noise.quantization)
     speed = np.abs(v)
