@@ -13,6 +13,7 @@ from hypothesis.extra.numpy import arrays
 
 from breakaway.errors import LogError
 from breakaway.measure.identification.events import BreakawayEvent, find_breakaway_events
+from breakaway.measure.identification.identifiability import identifiability
 from breakaway.measure.identification.stretches import find_stretches, noise
 from breakaway.measure.logs.log import Log
 
@@ -454,10 +455,14 @@ def test_noise_of_a_coarse_channel_is_that_of_its_rounding() -> None:
     assert noise(np.repeat(np.arange(50.0), 40)) == pytest.approx(1.0 / np.sqrt(12.0))
 
 
-def test_rests_that_end_in_motion_are_those_that_events_start_from() -> None:
-    for log, count in ((rig(), 1), (rig(back=True), 1), (without(rig(), rig().t_s < 2.0), 0)):
-        assert len(find_stretches(log).starts()) == count
-        assert len(find_breakaway_events(log).events) == count
+@pytest.mark.parametrize(("log", "count"), [(rig(), 1), (rig(back=True), 1), (None, 0)])
+def test_rests_that_end_in_motion_are_those_that_events_start_from(
+    log: Log | None, count: int
+) -> None:
+    moving = without(rig(), rig().t_s < 2.0)
+    found = find_breakaway_events(log or moving)
+    assert len(found.events) == count
+    assert identifiability(log or moving, law="coulomb").excitation.rests == count
 
 
 # A pull with three samples of 9.999 kN, as a test machine exports it
