@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.record import MotionKind, Rows, RunSettings
+from breakaway.measure.identification.stretches import find_stretches
 from breakaway.measure.identification.turns import (
     RESOLVED_ROWS,
     STILL,
@@ -67,7 +68,7 @@ class Excitation:
     reversals : int
         Changes of direction.
     rests : int
-        Rests of at least 10 rows that end in motion.
+        Rests that end in motion, as `breakaway.find_breakaway_events` finds them.
     presliding_m, noise_m : float
         Deflection of the joint before it slides, as far as the force and the motion show it, and
         the noise of the position.
@@ -152,7 +153,7 @@ def excitation(rows: Rows, places: Places) -> Excitation:
         slow_speed_m_per_s=slow,
         fast_speed_m_per_s=fast,
         reversals=int(np.count_nonzero(np.diff(sign))),
-        rests=_rests(moving),
+        rests=_rests(rows, places),
         presliding_m=_presliding(x, v, force, top),
         noise_m=noise_m,
         both_directions=both,
@@ -165,12 +166,9 @@ def excitation(rows: Rows, places: Places) -> Excitation:
     )
 
 
-def _rests(moving: Array) -> int:
-    edges = np.flatnonzero(np.diff(moving.astype(int)))
-    starts = np.concatenate([[0], edges + 1])
-    lengths = np.diff(np.concatenate([starts, [len(moving)]]))
-    resting = ~moving[starts]
-    return int(np.sum(resting[:-1] & (lengths[:-1] >= 10)))
+def _rests(rows: Rows, places: Places) -> int:
+    starts = [motion.first for motion in find_stretches(rows.log).starts()]
+    return int(np.count_nonzero(np.isin(starts, places)))
 
 
 def _presliding(x: Array, v: Array, force: Array, top: float) -> float:
