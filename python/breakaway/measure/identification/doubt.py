@@ -33,13 +33,13 @@ BRISTLE = ("stiffness_n_per_m", "damping_n_s_per_m", "elastic_share")
 PREFERRED = 10.0
 """Deviance by which a law must explain a log better than its rival: odds of 150 to 1."""
 
-ABOUT_TURNS = 3.0
+ABOUT_TURNS = 5.0
 """Rows are about a turn within this many deflections of it."""
 
 ROWS_ABOUT_TURNS = 3
 """Rows after a turn that are about it at least."""
 
-EDGES = (0.1, 0.3, 0.6, 1.0, 1.6, ABOUT_TURNS)
+EDGES = (0.1, 0.3, 0.6, 1.0, 1.6, 3.0)
 """Ways since a turn, in deflections, between which residuals are averaged."""
 
 FEWEST_TURNS = 4
@@ -126,6 +126,25 @@ def events(asked: Prepared, settings: RunSettings, best: Array) -> dict[int, int
         peak = ("stribeck_velocity_m_per_s", "stiction_ratio")
         out |= {names.index(name): passages(v, slow) for name in peak if name in names}
     return out
+
+
+def with_hidden_mass(known: Covariance, asked: Prepared, slopes: Array) -> Covariance:
+    """Return the covariance that allows for a mass which was held at 0 because it hardly shows.
+
+    The largest that would not show counts as two standard errors; it moves the parameters by
+
+    ::
+
+        d = -(Jᵀ J)⁻¹ Jᵀ m a
+    """
+    held = asked.neutral.get("mass_kg") == 0.0 and "mass_kg" not in asked.held
+    told = np.isfinite(np.diag(known.matrix))
+    if not held or not told.any():
+        return known
+    inertia_n = asked.sizes.hidden_mass_kg * asked.rows.columns[2, asked.places]
+    moved = np.zeros(len(told))
+    moved[told] = np.linalg.lstsq(slopes[:, told], inertia_n / asked.problem.scale, rcond=None)[0]
+    return replace(known, matrix=known.matrix + 0.25 * np.outer(moved, moved))
 
 
 def _deflection_m(values: dict[str, float], asked: Prepared) -> float:

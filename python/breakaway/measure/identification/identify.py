@@ -12,7 +12,7 @@ import numpy as np
 from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
-from breakaway.measure.identification.doubt import doubt, events
+from breakaway.measure.identification.doubt import doubt, events, with_hidden_mass
 from breakaway.measure.identification.identifiability import Prepared, prepare
 from breakaway.measure.identification.inertia_friction import identify_inertia_friction
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
@@ -272,6 +272,7 @@ class _Found:
         weighted = _robust(self.loss, residual)
         known = covariance(weighted * residual, weighted[:, None] * slopes)
         known = few_events(known, events(self.asked, self.settings, best))
+        known = with_hidden_mass(known, self.asked, slopes)
         in_doubt = None
         if self.asked.excitation.broke_away:
             in_doubt = doubt(self.asked, self.law, self.settings, self.loss, best, known)
@@ -334,7 +335,7 @@ class _Found:
     ) -> tuple[Estimate, ...]:
         """Return what the log tells of friction and offset together, where it goes one way."""
         shown = self.asked.excitation
-        if not self._goes_one_way or shown.sticks_and_slips or not shown.broke_away:
+        if not self._goes_one_way or shown.slips or not shown.broke_away:
             return ()
         return sums(self.asked.problem.layout, best, known.matrix, shown, estimates)
 

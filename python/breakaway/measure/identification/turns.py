@@ -30,11 +30,11 @@ FEWEST_ROWS = 8
 FEWEST_SLIPS = 3
 """Fewest slips that make stick-slip."""
 
-RESOLVED_ROWS = 50
-"""Rows in which a slip is resolved: with fewer, the low-pass of the motion takes part of it."""
-
 FALL = 0.05
 """Share of the force by which it falls in a slip, at least."""
+
+HALFWAY = (0.25, 0.75)
+"""Share of the fall that has happened halfway, for a spring 0.5; at a peak of friction nearly 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,23 +110,34 @@ def passages(v: Array, slow_m_per_s: float) -> int:
     return int(np.count_nonzero(np.diff(slow) > 0) + slow[0])
 
 
-def short_slips(v: Array, force: Array) -> tuple[int, int]:
+def stick_slip(x: Array, v: Array, force: Array) -> tuple[int, int]:
     """Return how often a part slips after it stuck, and the median rows of a slip.
 
-    A slip is faster than a fifth of the top speed, and the force falls in it; between slips the
-    part stands nearly still. Zero where that is not how the part moves.
+    A slip is faster than a fifth of the top speed, and the part stands nearly still before the
+    next one in the same direction. Over a slip the force falls in step with the way, as that of
+    the spring behind which it slips. Zero where that is not how the part moves.
     """
     speed = np.abs(v)
     top = float(np.quantile(speed, 0.999))
     fast = np.concatenate([[0], (speed > FASTER * top).astype(int), [0]])
     edges = np.flatnonzero(np.diff(fast))
-    starts, ends = edges[::2], np.minimum(edges[1::2], len(v) - 1)
-    if len(starts) < FEWEST_SLIPS or np.mean(speed < STILL * top) < 0.5:
+    starts, ends = np.maximum(edges[::2] - 1, 0), np.minimum(edges[1::2], len(v) - 1)
+    ways = x[ends] - x[starts]
+    onward = np.abs(ways) > 0.3 * np.abs(ways).max(initial=0.0)
+    starts, ends, ways = starts[onward], ends[onward], ways[onward]
+    if len(starts) < FEWEST_SLIPS:
         return 0, 0
-    directions = np.sign(v[(starts + ends) // 2])
-    stuck = [bool(np.any(speed[a:b] < STILL * top)) for a, b in zip(ends[:-1], starts[1:], strict=True)]
-    again = np.array(stuck) & (directions[1:] == directions[:-1])
-    fall = directions * (force[np.maximum(starts - 1, 0)] - force[ends])
-    if np.sum(again) < FEWEST_SLIPS - 1 or np.median(fall) < FALL * np.median(np.abs(force)):
+    pauses = zip(ends[:-1], starts[1:], strict=True)
+    stuck = np.array([bool(np.any(speed[end : start + 1] < STILL * top)) for end, start in pauses])
+    again = stuck & (np.sign(ways[1:]) == np.sign(ways[:-1]))
+    falls = np.sign(ways) * (force[starts] - force[ends])
+    shares = [
+        float(np.interp(0.5, (x[a : b + 1] - x[a]) / way, (force[a] - force[a : b + 1]) / fall))
+        for a, b, way, fall in zip(starts, ends, ways, np.sign(ways) * falls, strict=True)
+        if fall != 0.0
+    ]
+    falls_enough = np.median(falls) > FALL * np.median(np.abs(force))
+    in_step = bool(shares) and HALFWAY[0] < np.median(shares) < HALFWAY[1]
+    if np.sum(again) < FEWEST_SLIPS - 1 or not (falls_enough and in_step):
         return 0, 0
-    return len(starts), int(np.median(ends - starts))
+    return len(starts), int(np.median(ends - starts)) - 1
