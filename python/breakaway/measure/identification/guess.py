@@ -43,6 +43,7 @@ class Scales:
     noise_m: float
     velocity_noise_m_per_s: float
     period_s: float
+    duration_s: float
 
     def stiffest(self, settings: RunSettings) -> float:
         """Return the largest stiffness in N/m that can be told, or simulated."""
@@ -61,7 +62,8 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
         The part never moves, or the force is 0 throughout.
 
     """
-    x, v, a, force = rows.columns[:4, chosen]
+    x, v, a = rows.columns[:3, chosen]
+    force = rows.driving_force_n[chosen]
     log, noise = rows.log, noise_floor(rows.log, "position_m")
     noise_m = max(noise.white, noise.quantization)
     travel, speed = float(np.ptp(x)), float(np.quantile(np.abs(v), 0.99))
@@ -76,11 +78,14 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     _check_dissipation(log, force, v)
     held = np.zeros_like(force) if mass_kg is None else mass_kg * a
     columns = np.column_stack([a, v, np.sign(v), np.ones_like(v)])[moving]
+    if np.all(columns[:, 2] == columns[0, 2]):
+        columns = columns[:, :3]
     size = float(np.sqrt(np.mean(force**2)))
     inertia = mass_kg if mass_kg is not None else _inertia(columns, force[moving], size)
     if mass_kg is not None or inertia == 0.0:
         columns[:, 0] = 0.0
     found = np.linalg.lstsq(columns, (force - held)[moving], rcond=None)[0]
+    found = np.append(found, 0.0)[:4]
     coulomb = max(float(found[2]), 0.05 * size)
     fallback = 0.01 * size / max(float(np.std(a)), 1e-300)
     return Scales(
@@ -95,6 +100,7 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
         noise_m=noise_m,
         velocity_noise_m_per_s=_velocity_noise(rows, noise_m),
         period_s=float(np.median(np.diff(log.t_s))),
+        duration_s=float(log.t_s[-1] - log.t_s[0]),
     )
 
 
@@ -159,6 +165,10 @@ def first_guess(parameter: Parameter, sizes: Scales, settings: RunSettings) -> t
         "elastic_share": (0.5, 0.7),
         "coulomb_slope_n_per_m": (0.0, 0.3 * slope),
         "spring_n_per_m": (0.0, 0.3 * slope),
+        "delay_s": (0.0, 0.0),
+        "drift_n_per_s": (0.0, 0.1 * sizes.force_n / sizes.duration_s),
+        "warming_per_s": (0.0, 0.1 / sizes.duration_s),
+        "backlash_m": (10.0 * sizes.noise_m, 5.0 * sizes.noise_m),
     }
     if parameter.name in known:
         return known[parameter.name]
@@ -178,6 +188,8 @@ def bounds_of(
         low, high = guess / REACH, guess * REACH
     if parameter.may_vanish:
         high = guess * REACH
+    if parameter.name == "warming_per_s":
+        low, high = -1.9 / sizes.duration_s, 1.9 / sizes.duration_s
     if parameter.name == "stiffness_n_per_m" and settings.motion != "imposed":
         high = sizes.stiffest(settings)
     return low, high

@@ -61,6 +61,12 @@ class Rows:
     even: bool
     lowpass_hz: float | None
 
+    @property
+    def driving_force_n(self) -> Array:
+        """All that drives the part, in N: the force, and the known one outside."""
+        force: Array = self.columns[3] + self.columns[9]
+        return force
+
 
 def measured_rows(log: Log, settings: RunSettings) -> Rows:
     """Derive what the core asks of each row; nothing is resampled.
@@ -95,6 +101,7 @@ def measured_rows(log: Log, settings: RunSettings) -> Rows:
     rate = np.gradient(target, t_s)
     columns = [x - origin, velocity, acceleration, force, target - origin, rate]
     columns += [np.append(steps, steps[-1]), np.append(np.diff(path) / steps, 0.0), held]
+    columns += [log.driving_force_n - force, t_s - 0.5 * (t_s[0] + t_s[-1])]
     return Rows(log, np.array(columns), even, lowpass_hz)
 
 
