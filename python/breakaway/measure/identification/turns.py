@@ -41,7 +41,7 @@ HALFWAY = (0.25, 0.75)
 class Turns:
     """Rows cut where the direction changes.
 
-    ``direction`` is that of the last row that moved, ``stretch`` the number of the stretch that a
+    ``direction`` is that of the stretch, ``stretch`` the number of the stretch that a
     row is of, ``since_m`` the way since its turn and ``rows_since`` the rows since it.
     """
 
@@ -57,15 +57,20 @@ class Turns:
 
 
 def find_turns(x: Array, v: Array) -> Turns:
-    """Cut rows where the direction changes; what stands still goes on in the same direction."""
+    """Cut rows where the part is farthest before it goes back; standing still is no turn."""
     moving = np.flatnonzero(np.abs(v) > STILL * float(np.quantile(np.abs(v), 0.99)))
-    last = np.maximum(np.searchsorted(moving, np.arange(len(v)), side="right") - 1, 0)
-    direction = np.sign(v[moving[last]])
-    changes = np.concatenate([[False], np.diff(direction) != 0.0])
+    signs = np.sign(v[moving])
+    starts = [0]
+    for place in np.flatnonzero(np.diff(signs)):
+        before, after = moving[place], moving[place + 1]
+        starts.append(int(before + np.argmax(signs[place] * x[before : after + 1])))
+    changes = np.zeros(len(x), dtype=np.intp)
+    changes[starts[1:]] = 1
     stretch = np.cumsum(changes)
-    first = np.concatenate([[0], np.flatnonzero(changes)])[stretch]
+    first = np.array(starts)[stretch]
     way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
-    return Turns(direction, stretch, way - way[first], np.arange(len(v)) - first)
+    directions = signs[np.concatenate([[0], np.flatnonzero(np.diff(signs)) + 1])]
+    return Turns(directions[stretch], stretch, way - way[first], np.arange(len(v)) - first)
 
 
 def broke_away(
@@ -90,7 +95,7 @@ def broke_away(
 
 def _change(turns: Turns, here: Whole, force: Array) -> Array:
     """Return the force since a turn, in the direction of motion."""
-    before = float(np.median(force[max(here[0] - 1, 0) : here[0] + 2]))
+    before = float(np.median(force[max(here[0] - 2, 0) : here[0] + 1]))
     change: Array = turns.direction[here] * (force[here] - before)
     return change
 
