@@ -32,7 +32,7 @@ def find_drift(rows: Rows) -> tuple[Fault, ...]:
     with the standard errors of correlated residuals. A drift moves both directions alike; friction
     that warms or runs in moves them together.
     """
-    if turns(rows.columns[1]) < FEWEST_TURNS:
+    if turns(rows) < FEWEST_TURNS:
         return ()
     base = reference(rows)
     force, time = rows.driving_force_n, rows.columns[10]
