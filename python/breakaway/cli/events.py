@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from breakaway.base.one_line import counted
 from breakaway.cli.measured import measured
 from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Use
 from breakaway.cli.quantity import show
@@ -68,6 +69,8 @@ def events(
     for report in reports:
         for reason in report.refused:
             say(f"- {report.name}: {reason}")
+        if report.spikes:
+            say(f"- {report.name}: {_spikes(report)}")
         if report.offset_n is None:
             say(f"- {report.name}: offset unknown, {report.offset_reason}")
     for hint in hints:
@@ -97,6 +100,14 @@ def _table(reports: list[BreakawayReport]) -> Sheet:
                 "" if rate is None else f"{rate:.3g} N/s",
             )
     return shown
+
+
+def _spikes(report: BreakawayReport) -> str:
+    first = report.spikes[0]
+    return (
+        f"{counted(len(report.spikes), 'single sample')} of the force stand alone, the first of "
+        f"{show('force_n', first.force_n)} at {first.time_s:.6g} s; they are not taken for load"
+    )
 
 
 def _population(found: Population) -> Sheet:

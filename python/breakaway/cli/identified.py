@@ -74,7 +74,7 @@ def law_tables(
     found: Identification, compared: Sequence[ComparedLaw], held_out: Prediction | None
 ) -> list[Sheet | str]:
     """Give the tables of a law that was fitted by simulation."""
-    from breakaway.measure.identification.verdicts import stiction_peak
+    from breakaway.measure.identification.curve import peak_in_words
 
     parts: list[Sheet | str] = []
     if compared:
@@ -90,7 +90,7 @@ def law_tables(
     if held_out is not None:
         predicted = show(_named(held_out.channel), held_out.rms_error)
         told.append(f"RMS error on the held-out rows: {predicted}")
-    told.append(stiction_peak({one.name: one for one in found.estimates}, found.verdicts))
+    told.append(peak_in_words(found))
     told += [*found.log.history, *found.notes]
     return [*parts, *(f"- {note}" for note in told)]
 

@@ -23,8 +23,10 @@ from breakaway.measure.identification.sliding import (
     reversals,
     sliding_levels,
 )
+from breakaway.measure.identification.spikes import Spike, spike_places, without_spikes
 from breakaway.measure.identification.stretches import (
     RESOLVED,
+    Places,
     Stretch,
     Stretches,
     find_stretches,
@@ -49,6 +51,9 @@ WORTH = 0.25
 
 PROMINENT = 0.5
 """A peak after no rest is taken as a breakaway if it exceeds the sliding level by this share."""
+
+RISING_SAMPLES = 3
+"""Fewest samples within the rise of a load that show how it rises."""
 
 SATURATED_SAMPLES = 4
 """A peak of as many equal samples is cut off."""
@@ -81,10 +86,11 @@ class BreakawayEvent:
     load_start_s : float or None
         Time at which the load starts to grow.
     rest_s : float
-        How long the part is seen at rest before.
+        How long the part is seen at rest before, without the time of gaps.
     fallen_share : float or None
         How much of the way from the peak down to the sliding level was recorded before a gap,
-        or before the log ends: 1 where there is none.
+        or before the log ends: 1 where there is none. None where that way is no longer than
+        a tenth of the sliding friction, or the sliding level is not known.
     is_lower_bound : bool
         Whether the joint may have held more than was recorded.
     reason : str
@@ -122,7 +128,8 @@ class BreakawayEvent:
 class BreakawayReport(OneLine):
     """What a log shows of breakaway, and why it does not show more.
 
-    ``offset_n`` is None, with its reason, where it cannot be estimated. ``gaps_s`` has the
+    ``offset_n`` is None, with its reason, where it cannot be estimated. ``spikes`` are single
+    samples of the force that stand alone and are taken for no load. ``gaps_s`` has the
     stamps before and after each gap. ``settings`` has those that the search was made with.
     """
 
@@ -136,6 +143,7 @@ class BreakawayReport(OneLine):
     offset_error_n: float | None
     offset_reason: str
     force_noise_n: float
+    spikes: tuple[Spike, ...]
     position_resolution_m: float
     rest_speed_m_per_s: float
     speed_window_s: float
@@ -171,9 +179,11 @@ def find_breakaway_events(
     describes. Sliding is established once the part has half of its median speed and the load
     has come back to a tenth of its excess over the sliding level; a load that stays at that
     level for as long as it took to get there has no peak. A gap of the log is never
-    interpolated: a peak that may lie in one makes the event a lower bound, or, where the load
-    before it did not exceed the sliding level, a refusal. A part that never moves gives one
-    lower bound, the largest load that it held.
+    interpolated: a peak beside one, or that may lie in one, makes the event a lower bound, or,
+    where the load before it did not come to the sliding level, a refusal. So does a load that
+    rises within fewer than three samples. A single sample that stands alone is no load: it is
+    listed, and the load before it is taken to last. A part that never moves gives one lower
+    bound, the largest load that it held.
 
     Background: C. Canudas de Wit et al., "A new model for control of systems with friction",
     IEEE Transactions on Automatic Control 40(3), 1995, shows how the breakaway force falls with
@@ -252,13 +262,15 @@ def find_breakaway_events(
         min_slip_m=min_slip_m,
         gap_s=gap_s,
     )
-    levels = sliding_levels(cut, log.force_n)
+    places = spike_places(log.force_n)
+    force = without_spikes(log.force_n, places)
+    levels = sliding_levels(cut, force)
     offset, error, why = (
         estimate_offset(levels) if offset_n is None else (float(offset_n), 0.0, "given")
     )
     search = _Search(
-        log, cut, noise(log.force_n), offset, error, sliding_window_s, passed_share,
-        friction(levels, offset),
+        log.name, cut, force, places, noise(log.force_n), offset, error, sliding_window_s,
+        passed_share, friction(levels, offset),
     )  # fmt: skip
     events, refused = search.starts()
     return BreakawayReport(
@@ -272,6 +284,7 @@ def find_breakaway_events(
         offset_error_n=error,
         offset_reason=why,
         force_noise_n=search.noise_n,
+        spikes=tuple(Spike(float(log.t_s[k]), float(log.force_n[k])) for k in places),
         position_resolution_m=cut.resolution_m,
         rest_speed_m_per_s=cut.rest_speed_m_per_s,
         speed_window_s=cut.window_s,
@@ -300,8 +313,10 @@ class _Start:
 class _Search:
     """All that the search for the events of one log needs to know."""
 
-    log: Log
+    name: str
     cut: Stretches
+    force_n: Array
+    spikes: Places
     noise_n: float
     offset_n: float | None
     offset_error_n: float | None
@@ -325,13 +340,16 @@ class _Search:
             found.append(self._without_rest(stretches[0]))
         for k, stretch in enumerate(stretches):
             if stretch.direction == 0:
-                jumps = self.cut.jumps(stretch.first, stretch.last)
-                found += [self._in_gap(g) for g in jumps]
-                if k + 1 < len(stretches):
-                    rest = max([stretch.first, *(g + 1 for g in jumps)])
-                    found.append(self._from_rest(rest, stretches[k + 1]))
+                found += [self._in_gap(g) for g in self.cut.jumps(stretch.first, stretch.last)]
+                if k + 1 < len(stretches) and not self._started_in_gap(stretch):
+                    found.append(self._from_rest(self.cut.rest_since(stretch), stretches[k + 1]))
         events = [event for event in found if isinstance(event, BreakawayEvent)]
         return events, [reason for reason in found if isinstance(reason, str)]
+
+    def _started_in_gap(self, rest: Stretch) -> bool:
+        """Whether a part that moved over a gap of a rest did not come to rest after it."""
+        since = self.cut.rest_since(rest)
+        return since > rest.first and not self.cut.shows_rest(since, rest.last + 1)
 
     def _in_gap(self, gap: int) -> str:
         t_s, x = self.cut.t_s, self.cut.position_m
@@ -341,7 +359,7 @@ class _Search:
         )
 
     def _start(self, rest: int, motion: Stretch) -> _Start:
-        load = motion.direction * self.log.force_n
+        load = motion.direction * self.force_n
         speed = motion.direction * self.cut.speed_m_per_s
         inside = np.zeros(len(load), dtype=bool)
         inside[motion.first : motion.last + 1] = True
@@ -423,11 +441,9 @@ class _Search:
 
     def _from_rest(self, rest: int, motion: Stretch) -> BreakawayEvent | str:
         t_s = self.cut.t_s
-        short = t_s[motion.first] - t_s[rest] < self.cut.window_s
-        unknown = not np.isfinite(self.cut.speed_m_per_s[rest : motion.first]).any()
-        if rest == 0 and (short or unknown):
-            return self._without_rest(motion)
-        if short or unknown:
+        if not self.cut.shows_rest(rest, motion.first):
+            if rest == 0:
+                return self._without_rest(motion)
             return (
                 f"the start at {t_s[motion.first]:.6g} s: too few samples show the part at rest "
                 "before it; its breakaway was not recorded"
@@ -436,7 +452,7 @@ class _Search:
         peak = self._peak(start)
         reason = self._hidden(start, peak)
         worth = max(SIGNIFICANCE * self.noise_n, WORTH * self.friction_n)
-        if "a gap" in reason and self._excess(start, peak) <= worth:
+        if self._gap_before(start, peak) and self._excess(start, peak) <= worth:
             return (
                 f"the start at {t_s[motion.first]:.6g} s: {reason}; the recorded load hardly "
                 "exceeds the sliding level, so its breakaway was not recorded"
@@ -481,13 +497,14 @@ class _Search:
         """Say what may hide a higher load than the recorded peak; empty where nothing does."""
         reasons = [self._gap_before(start, peak), self._after(start, peak)]
         reasons += [self._saturated(peak), self._loaded_at_start(start, peak)]
+        reasons += [self._beside_spike(start, peak), self._steep(start, peak)]
         return next((reason for reason in reasons if reason), "")
 
     def _gap_before(self, start: _Start, peak: int) -> str:
         begin = self._load_start(start, peak)
         t_s, gaps = self.cut.t_s, self.cut.gaps
         for gap in gaps[(gaps >= begin) & (gaps < peak)]:
-            if gap + 1 >= start.move or self.cut.moved_over(int(gap)):
+            if gap + 1 >= min(start.move, peak) or self.cut.moved_over(int(gap)):
                 return (
                     f"a gap of {t_s[gap + 1] - t_s[gap]:.3g} s lies between the start of loading "
                     "and the recorded peak"
@@ -497,16 +514,18 @@ class _Search:
     def _fallen(self, start: _Start, peak: int) -> tuple[float | None, int | None]:
         """Return the share of the fall that was recorded, and the gap or end that follows it."""
         last = start.end if start.level is None else self._settled(start, peak)
+        flat = self._excess(start, peak) <= self.tolerance_n
+        if flat:  # no fall says that the peak is over: the level itself has to be seen
+            last = min(last + FEWEST_SAMPLES, start.end)
         gaps = self.cut.gaps[(self.cut.gaps >= peak) & (self.cut.gaps < last)]
         ends = start.level is None and self._ends_loaded(start, peak)
         if not gaps.size and not ends:
             return 1.0, None
         stop = int(gaps[0]) if gaps.size else len(start.load) - 1
-        if start.level is None or start.load[peak] <= start.level:
+        if start.level is None or flat:
             return None, stop
-        lowest = float(start.load[peak : stop + 1].min())
-        drop = (start.load[peak] - lowest) / (start.load[peak] - start.level)
-        return float(min(drop, 1.0)), stop
+        drop = float(start.load[peak] - start.load[stop])
+        return min(drop / self._excess(start, peak), 1.0), stop
 
     def _ends_loaded(self, start: _Start, peak: int) -> bool:
         """Whether the log ends without another move, and with the load still near its peak."""
@@ -518,7 +537,10 @@ class _Search:
 
     def _after(self, start: _Start, peak: int) -> str:
         share, stop = self._fallen(start, peak)
-        if stop is None or (share is not None and share >= self.passed_share):
+        if stop is None:
+            return ""
+        significant = start.load[peak] - start.load[stop] > SIGNIFICANCE * self.noise_n
+        if share is not None and share >= self.passed_share and significant:
             return ""
         t_s = self.cut.t_s
         samples = f"{stop - peak} sample{'' if stop - peak == 1 else 's'}"
@@ -530,8 +552,32 @@ class _Search:
             return f"{gap} follows the recorded peak at once{fallen}"
         return f"{gap} begins {samples} after the recorded peak{fallen}"
 
+    def _beside_spike(self, start: _Start, peak: int) -> str:
+        """Say so where a single sample stands alone between the peak and sliding."""
+        last = peak + 1 if start.level is None else self._settled(start, peak)
+        beside = self.spikes[(self.spikes >= max(start.move, peak) - 1) & (self.spikes <= last)]
+        if not beside.size:
+            return ""
+        return (
+            f"a single sample at {self.cut.t_s[beside[0]]:.6g} s stands alone beside the peak; the "
+            "joint held more if it is no disturbance"
+        )
+
+    def _steep(self, start: _Start, peak: int) -> str:
+        """Say so where too few samples show the load's rise."""
+        begin = self._load_start(start, peak)
+        rise = start.load[peak] - start.load[begin]
+        inside = self._rising(start, begin, peak)
+        seen = np.count_nonzero(inside)
+        if seen >= RISING_SAMPLES or rise <= SIGNIFICANCE * self.noise_n:
+            return ""
+        return (
+            f"the load rises by {rise:.4g} N with {counted(int(seen), 'sample')} on the way; a "
+            "higher peak may lie between two samples"
+        )
+
     def _saturated(self, peak: int) -> str:
-        force = self.log.force_n
+        force = self.force_n
         if force[peak] not in (force.max(), force.min()):
             return ""
         same = np.flatnonzero(force[peak:] != force[peak])
@@ -580,7 +626,7 @@ class _Search:
             presliding_displacement_m=way if load_seen else None,
             loading_rate_n_per_s=rate,
             load_start_s=float(t_s[begin]) if load_seen else None,
-            rest_s=float(min(t_s[start.move], t_s[peak]) - t_s[start.rest]),
+            rest_s=self.cut.seen_s(start.rest, min(start.move, peak)),
             fallen_share=self._fallen(start, peak)[0],
             is_lower_bound=bool(reason),
             reason=reason,
@@ -594,27 +640,33 @@ class _Search:
         if np.any((self.cut.gaps >= begin) & (self.cut.gaps < peak)):
             return None
         load, t_s = start.load[begin : peak + 1], self.cut.t_s[begin : peak + 1]
-        low, high = (load[0] + share * (load[-1] - load[0]) for share in LOADING)
-        inside = (load >= low) & (load <= high)
-        if np.count_nonzero(inside) < 3 or load[-1] - load[0] <= SIGNIFICANCE * self.noise_n:
+        inside = self._rising(start, begin, peak)
+        few = np.count_nonzero(inside) < RISING_SAMPLES
+        if few or load[-1] - load[0] <= SIGNIFICANCE * self.noise_n:
             return None
         t = t_s[inside] - t_s[inside].mean()
         return float(t @ load[inside] / (t @ t))
 
+    def _rising(self, start: _Start, begin: int, peak: int) -> npt.NDArray[np.bool_]:
+        """Tell which samples from ``begin`` to the peak lie between 10 and 90 % of the rise."""
+        load = start.load[begin : peak + 1]
+        low, high = (load[0] + share * (load[-1] - load[0]) for share in LOADING)
+        return np.asarray((load >= low) & (load <= high))
+
     def _never(self) -> BreakawayEvent:
         """Give the largest load that a part held which never moved."""
-        force = self.log.force_n - (self.offset_n or 0.0)
+        force = self.force_n - (self.offset_n or 0.0)
         peak = int(np.argmax(np.abs(force)))
         if abs(force[peak]) <= SIGNIFICANCE * self.noise_n:
             raise LogError(
-                f"{self.log.name}: the part neither moves (its travel must exceed "
+                f"{self.name}: the part neither moves (its travel must exceed "
                 f"{RESOLVED:g} times the noise of the position, {self.cut.resolution_m:.3g} m) nor "
                 f"is loaded (largest force {abs(force[peak]):.3g} N, which must exceed "
                 f"{SIGNIFICANCE:g} times its noise of {self.noise_n:.3g} N): record a log in which "
                 "it is"
             )
         direction = 1 if force[peak] > 0.0 else -1
-        load = direction * self.log.force_n
+        load = direction * self.force_n
         last = len(load) - 1
         start = _Start(direction, 0, last, last, load, np.zeros(len(load), dtype=bool), None)
         reason = "the part never moves; it held this load"

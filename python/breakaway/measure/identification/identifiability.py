@@ -33,7 +33,13 @@ from breakaway.measure.identification.settings import (
     checked_spans,
     known,
 )
-from breakaway.measure.identification.verdicts import Excitation, Verdict, excitation, unexcited
+from breakaway.measure.identification.verdicts import (
+    Excitation,
+    Places,
+    Verdict,
+    excitation,
+    unexcited,
+)
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.controller import Pid
@@ -44,8 +50,12 @@ class Prepared:
     """A problem as it is handed to the optimizer, and what was found out on the way."""
 
     rows: Rows
+    places: Places
     spans: tuple[Span, ...]
+    segments: tuple[tuple[int, int], ...]
+    owners: tuple[int, ...]
     held: Mapping[str, float]
+    neutral: Mapping[str, float]
     held_back: tuple[Verdict, ...]
     excitation: Excitation
     sizes: Scales
@@ -86,9 +96,9 @@ def prepare(
     candidates = [name for name in names if name not in fixed and name not in free]
     mass_shows = sizes.mass_shows or method == "least_squares"
     back = unexcited(candidates, shown, settings, mass_shows)
-    neutral = {name: value for name, (value, _) in back.items()}
     resting = idle(names, (*free, *fixed))
-    numbers = {**stand_in(law, settings, sizes), **neutral, **resting, **fixed}
+    neutral = {name: value for name, (value, _) in back.items()} | resting | dict(fixed)
+    numbers = {**stand_in(law, settings, sizes), **neutral}
     layout = Layout.of(parameters, numbers, tuple(owners))
     channel = predicted_channel(settings.motion)
     measured = np.ascontiguousarray(rows.columns[0 if channel == "position_m" else 3][places])
@@ -98,8 +108,12 @@ def prepare(
     guess, spread, bounds = internal_guess(layout, sizes, settings, guesses)
     return Prepared(
         rows=rows,
+        places=places,
         spans=tuple(spans),
+        segments=tuple(segments),
+        owners=tuple(owners),
         held=dict(fixed),
+        neutral=neutral,
         held_back=tuple(verdict for _, verdict in back.values()),
         excitation=shown,
         sizes=sizes,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
+from breakaway.measure.identification.doubt import doubt, events, with_hidden_mass
 from breakaway.measure.identification.identifiability import Prepared, prepare
 from breakaway.measure.identification.inertia_friction import identify_inertia_friction
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
@@ -42,11 +43,14 @@ from breakaway.measure.identification.uncertainty import (
     NOT_TOLD_FROM_0,
     Covariance,
     covariance,
+    few_events,
     interval,
 )
+from breakaway.measure.identification.together import sums, without_offset
 from breakaway.measure.identification.verdicts import (
     Estimate,
     Verdict,
+    untold,
     verdicts,
 )
 from breakaway.measure.logs.log import Array, Log
@@ -252,7 +256,7 @@ class _Found:
     law: Law
     settings: RunSettings
     asked: Prepared
-    loss: str
+    loss: Loss
     seed: int
 
     def result(
@@ -267,7 +271,16 @@ class _Found:
         residual, slopes = problem.residual_and_slopes(best)
         weighted = _robust(self.loss, residual)
         known = covariance(weighted * residual, weighted[:, None] * slopes)
+        known = few_events(known, events(self.asked, self.settings, best))
+        known = with_hidden_mass(known, self.asked, slopes)
+        in_doubt = None
+        if self.asked.excitation.broke_away:
+            in_doubt = doubt(self.asked, self.law, self.settings, self.loss, best, known)
+        known = known if in_doubt is None else in_doubt.known
         estimates = self._estimates(best, known)
+        estimates = estimates if in_doubt is None else in_doubt.judged(estimates)
+        combined = self._combined(best, known, estimates)
+        estimates = self._judged(estimates)
         errors = residual * problem.scale
         rms = float(np.sqrt(np.mean(errors**2)))
         power = float(residual @ residual)
@@ -282,6 +295,7 @@ class _Found:
             spans=self.asked.spans,
             excitation=self.asked.excitation,
             estimates=tuple(_with_verdict(one, judged) for one in estimates),
+            combined=combined,
             fixed=dict(self.asked.held),
             rms_error=rms,
             relative_error_percent=percent,
@@ -311,11 +325,38 @@ class _Found:
             internals=Internals(problem, best, self.asked.bounds, known),
         )
 
-    def _fitted_rows(self, best: Array) -> Prediction:
-        numbers = self.asked.problem.layout.numbers(best)
-        return predict_rows(
-            self.asked.rows, self.asked.spans, self.law, self.settings, numbers, same=True
-        )
+    @property
+    def _goes_one_way(self) -> bool:
+        held = {one.parameter for one in self.asked.held_back}
+        return bool({"offset_n", "offset_1_n"} & held)
+
+    def _combined(
+        self, best: Array, known: Covariance, estimates: Sequence[Estimate]
+    ) -> tuple[Estimate, ...]:
+        """Return what the log tells of friction and offset together, where it goes one way."""
+        shown = self.asked.excitation
+        if not self._goes_one_way or shown.slips or not shown.broke_away:
+            return ()
+        return sums(self.asked.problem.layout, best, known.matrix, shown, estimates)
+
+    def _judged(self, estimates: Sequence[Estimate]) -> list[Estimate]:
+        """Take back what the motion of the log does not tell."""
+        shown = self.asked.excitation
+        names = [one.name for one in estimates]
+        held = [one.parameter for one in self.asked.held_back]
+        reasons = untold(names, shown, self.settings.motion, held)
+        out = [
+            replace(one, identifiable=False, remark=reasons[one.name])
+            if one.name in reasons
+            else one
+            for one in estimates
+        ]
+        values = {one.name: one.value for one in estimates}
+        if self._goes_one_way and "coulomb_n" in values:
+            place = names.index("coulomb_n")
+            stiction_n = values["coulomb_n"] * values.get("stiction_ratio", 1.0)
+            out[place] = without_offset(out[place], shown, stiction_n)
+        return out
 
     def _estimates(self, best: Array, known: Covariance) -> list[Estimate]:
         layout = self.asked.problem.layout
@@ -406,5 +447,5 @@ def _robust(loss: str, residual: Array) -> Array:
 def _with_verdict(estimate: Estimate, judged: Sequence[Verdict]) -> Estimate:
     for one in judged:
         if one.parameter == estimate.name and not one.identifiable and estimate.identifiable:
-            return Estimate(**{**vars(estimate), "identifiable": False, "remark": one.because})
+            return replace(estimate, identifiable=False, remark=one.because)
     return estimate

@@ -15,10 +15,10 @@ from breakaway.base.arguments import check_arguments
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import text_of
 from breakaway.errors import LogError, ScenarioError
+from breakaway.measure.identification.curve import peak_in_words
 from breakaway.measure.identification.inertia_friction import InertiaFrictionFit
 from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.uncertainty import Posterior
-from breakaway.measure.identification.verdicts import stiction_peak
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.distribution import Samples
 from breakaway.model.scenario.files import parse_toml
@@ -426,7 +426,7 @@ def _provenance(found: Identification) -> Provenance:
             complete=found.complete,
         ),
         samples=len(found.fit.t_s),
-        notes=[*found.notes, stiction_peak({e.name: e for e in found.estimates}, found.verdicts)],
+        notes=[*found.notes, peak_in_words(found)],
     )
 
 

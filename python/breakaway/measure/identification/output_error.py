@@ -43,7 +43,7 @@ class Problem:
     """One record, one layout of parameters, and the channel whose error is made small.
 
     Residuals are divided by ``scale``, so that they are near 1 where the model is as good as the
-    measurement.
+    measurement, and times ``counted``, 0 for rows that are left out.
     """
 
     record: RigRecord
@@ -53,6 +53,7 @@ class Problem:
     scale: float
     lag: Lag
     every: int = 1
+    counted: Array | float = 1.0
     stop: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -78,7 +79,11 @@ class Problem:
 
     def _residual(self, predicted: Array) -> Array:
         with np.errstate(over="ignore", invalid="ignore"):
-            return _finite((predicted - self.measured[:: self.every]) / self.scale)
+            return _finite((predicted - self.measured[:: self.every]) / self.scale * self._counted)
+
+    @property
+    def _counted(self) -> Array | float:
+        return self.counted[:: self.every] if isinstance(self.counted, np.ndarray) else 1.0
 
     def residual_and_slopes(self, internal: Array) -> tuple[Array, Array]:
         """Return the residual and its derivatives with respect to the internal parameters."""
@@ -97,6 +102,7 @@ class Problem:
             value, by_row = self._shifted(value, by_row, internal)
         with np.errstate(over="ignore", invalid="ignore"):
             by_row *= layout.slope(internal) / self.scale
+            by_row *= np.reshape(self._counted, (-1, 1))
             return self._residual(value), np.nan_to_num(by_row, posinf=0.0, neginf=0.0)
 
     def _shifted(self, value: Array, by_row: Array, internal: Array) -> tuple[Array, Array]:

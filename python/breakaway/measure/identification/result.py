@@ -39,7 +39,9 @@ from breakaway.measure.logs.log import Array, Log
 class Identification(OneLine):
     """A joint as one log tells it.
 
-    ``estimates`` are the parameters that were fitted, ``fixed`` those that were held.
+    ``estimates`` are the parameters that were fitted, ``fixed`` those that were held. ``combined``
+    are sums that the log tells although it does not tell their parts, such as
+    ``coulomb_plus_offset_n`` where the part slides only one way.
     ``converged`` is whether the best start was done, ``complete`` whether no Ctrl-C cut the fit
     short: what is given then is the best so far.
     """
@@ -50,6 +52,7 @@ class Identification(OneLine):
     spans: tuple[Span, ...]
     excitation: Excitation
     estimates: tuple[Estimate, ...]
+    combined: tuple[Estimate, ...]
     fixed: Mapping[str, float]
     rms_error: float
     relative_error_percent: float
@@ -279,6 +282,7 @@ def as_dict(found: Identification) -> dict[str, Any]:
         "motion": found.settings.motion,
         "excitation": vars(found.excitation),
         "estimates": [vars(one) for one in found.estimates],
+        "combined": [vars(one) for one in found.combined],
         "fixed": dict(found.fixed),
         "channel": found.channel,
         "rms_error": found.rms_error,
