@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from breakaway.measure.identification.faults.fault import Fault
-from breakaway.measure.identification.faults.reference import reference, turns
+from breakaway.measure.identification.faults.reference import reference, thinned, turns
 from breakaway.measure.identification.record import Rows
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
@@ -41,6 +41,7 @@ def find_backlash(rows: Rows) -> tuple[Fault, ...]:
     """
     if turns(rows) < FEWEST_TURNS:
         return ()
+    rows = thinned(rows)
     base = reference(rows)
     noise = noise_floor(rows.log, "position_m")
     friction = base.resisting(rows.driving_force_n)

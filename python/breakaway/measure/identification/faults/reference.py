@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ PEAKED = (0, 4, 8, 12)
 COMES_BACK = 0.2
 """Travel one way, over that the other way, from which a part moves to and fro."""
 
+MOST_ROWS = 20_000
 RANK = 1e-8
 """Singular value, relative to the largest, below which columns count as dependent."""
 
@@ -46,6 +47,11 @@ class Reference:
         found = np.linalg.lstsq(self.columns, force, rcond=RANK)[0]
         left: Array = force - self.columns[:, ~self.joint] @ found[~self.joint]
         return left
+
+
+def thinned(rows: Rows) -> Rows:
+    """Return every so many-th row, so that at most some ten thousand are left."""
+    return replace(rows, columns=rows.columns[:, :: 1 + rows.columns.shape[1] // MOST_ROWS])
 
 
 def reference(rows: Rows) -> Reference:
