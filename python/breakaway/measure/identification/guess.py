@@ -196,7 +196,7 @@ def bounds_of(
     if parameter.may_vanish:
         high = guess * REACH
     if parameter.name == "warming_per_s":
-        low, high = -1.9 / sizes.duration_s, 1.9 / sizes.duration_s
+        low, high = -0.95 / sizes.duration_s, 19.0 / sizes.duration_s
     if parameter.name == "stiffness_n_per_m" and settings.motion != "imposed":
         high = sizes.stiffest(settings)
     return low, high

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from breakaway.measure.identification.faults.fault import Fault
-from breakaway.measure.identification.faults.reference import reference
+from breakaway.measure.identification.faults.reference import reference, thinned, turns
 from breakaway.measure.identification.record import Rows
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
@@ -39,6 +39,9 @@ def find_backlash(rows: Rows) -> tuple[Fault, ...]:
     over b, and only then rises on the other side: the span about 0 takes b more than the next. Over
     the turns the excess is tested against 0 by its spread (Student's t).
     """
+    if turns(rows) < FEWEST_TURNS:
+        return ()
+    rows = thinned(rows)
     base = reference(rows)
     noise = noise_floor(rows.log, "position_m")
     friction = base.resisting(rows.driving_force_n)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 from breakaway.measure.identification.faults.fault import Fault
-from breakaway.measure.identification.faults.reference import reference, turns
+from breakaway.measure.identification.faults.reference import reference, thinned, turns
 from breakaway.measure.identification.record import Rows
 from breakaway.measure.identification.uncertainty import covariance
 from breakaway.measure.logs.log import Array
@@ -32,11 +30,13 @@ def find_drift(rows: Rows) -> tuple[Fault, ...]:
     with the standard errors of correlated residuals. A drift moves both directions alike; friction
     that warms or runs in moves them together.
     """
-    if turns(rows.columns[1]) < FEWEST_TURNS:
+    if turns(rows) < FEWEST_TURNS:
         return ()
+    rows = thinned(rows)
     base = reference(rows)
     force, time = rows.driving_force_n, rows.columns[10]
     duration = float(np.ptp(time))
+    time = time - 0.5 * duration
     friction = base.friction(force)
     level = float(np.median(np.abs(friction)))
     if level == 0.0:
@@ -80,12 +80,12 @@ def _drifts(change_n: float, level_n: float, duration_s: float) -> Fault:
 
 
 def _warms(change: float, duration_s: float) -> Fault:
-    kind: Literal["warming"] = "warming"
+    change = float(np.clip(change, -1.5, 1.5))
     end = 100 * (1 + 0.5 * change) / (1 - 0.5 * change)
     return Fault(
-        kind,
+        "warming",
         "warming_per_s",
-        change / duration_s,
+        change / (1.0 - 0.5 * change) / duration_s,
         f"warming: friction ends at {end:.0f} % of what it began with, as joints do that warm up or "
-        "run in; levels are those of the middle of the record: fit shorter spans (repeats)",
+        "run in; the levels are those of its start",
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,10 @@ STRIBECK = (0.02, 0.06, 0.2)
 PEAKED = (0, 4, 8, 12)
 """The elements whose level may fall with speed."""
 
+COMES_BACK = 0.2
+"""Travel one way, over that the other way, from which a part moves to and fro."""
+
+MOST_ROWS = 20_000
 RANK = 1e-8
 """Singular value, relative to the largest, below which columns count as dependent."""
 
@@ -43,6 +47,11 @@ class Reference:
         found = np.linalg.lstsq(self.columns, force, rcond=RANK)[0]
         left: Array = force - self.columns[:, ~self.joint] @ found[~self.joint]
         return left
+
+
+def thinned(rows: Rows) -> Rows:
+    """Return every so many-th row, so that at most some ten thousand are left."""
+    return replace(rows, columns=rows.columns[:, :: 1 + rows.columns.shape[1] // MOST_ROWS])
 
 
 def reference(rows: Rows) -> Reference:
@@ -71,8 +80,16 @@ def reference(rows: Rows) -> Reference:
     return Reference(columns, np.arange(len(parts)) >= 3)
 
 
-def turns(v: Array) -> int:
-    """Return how often the part turns from motion one way to motion the other way."""
+def turns(rows: Rows) -> int:
+    """Return how often the part turns from motion one way to motion the other way.
+
+    It is 0 where the part hardly comes back: a part that is pulled one way may swing as it slips.
+    """
+    x, v = rows.columns[:2]
+    steps = np.diff(x)
+    back, forth = float(-steps[steps < 0.0].sum()), float(steps[steps > 0.0].sum())
+    if min(back, forth) < COMES_BACK * max(back, forth):
+        return 0
     moving = v[np.abs(v) > MOVING * float(np.quantile(np.abs(v), 0.99))]
     return int(np.count_nonzero(np.diff(np.sign(moving))))
 

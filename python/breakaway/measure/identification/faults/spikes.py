@@ -43,7 +43,7 @@ SHOWN = 5
 CHANNELS = ("position_m", "force_n")
 
 
-def without_spikes(log: Log) -> tuple[Log, tuple[Fault, ...]]:
+def leave_out_spikes(log: Log) -> tuple[Log, tuple[Fault, ...]]:
     """Return the log with its spikes on the line between their neighbors, and a fault per channel."""
     faults, values = [], {}
     for name in CHANNELS:
