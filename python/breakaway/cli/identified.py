@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
+from math import inf
 from typing import TYPE_CHECKING
 
 from breakaway.cli.quantity import show, show_uncertain, split_unit
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from breakaway.measure.identification import (
         AsymmetricFit,
         ComparedLaw,
+        Estimate,
         Identification,
         InertiaFrictionFit,
         Prediction,
@@ -113,9 +115,15 @@ def _estimates(found: Identification) -> Sheet:
     for one in found.estimates:
         words, unit = split_unit(one.name)
         value, error = show_uncertain(one.value, one.standard_error)
-        ends = f"{one.low:.4g} to {one.high:.4g}"
-        shown.add(words, value, error, ends, unit, "yes" if one.identifiable else one.remark)
+        told = one.remark or "yes"
+        shown.add(words, value, error, _ends(one), unit, told)
     return shown
+
+
+def _ends(one: Estimate) -> str:
+    if one.high == inf:
+        return f"at least {one.low:.4g}"
+    return f"{one.low:.4g} to {one.high:.4g}"
 
 
 def _open(found: Identification) -> Sheet:

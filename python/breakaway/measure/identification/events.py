@@ -13,6 +13,7 @@ from breakaway.base.arguments import check_arguments
 from breakaway.base.one_line import OneLine, counted
 from breakaway.base.text import shown
 from breakaway.errors import LogError
+from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.sliding import (
     FAST,
     FEWEST_SAMPLES,
@@ -55,6 +56,9 @@ PROMINENT = 0.5
 RISING_SAMPLES = 3
 """Fewest samples within the rise of a load that show how it rises."""
 
+FILTER_RISE = 0.35
+"""Rise of a step through a low-pass from 10 to 90 %, in periods of its cutoff."""
+
 SATURATED_SAMPLES = 4
 """A peak of as many equal samples is cut off."""
 
@@ -63,8 +67,9 @@ SATURATED_SAMPLES = 4
 class BreakawayEvent:
     """A start from rest: what load the joint held, and what it took to keep sliding.
 
-    Forces are magnitudes in the direction of motion. Those named ``raw`` are as measured; the
-    others have the report's offset taken off where it is known, else they equal the raw ones.
+    Forces are magnitudes in the direction of motion, at the part where a rig is given. Those
+    named ``raw`` are with the offset of the sensor; the others have the report's offset taken off
+    where it is known, else they equal the raw ones.
 
     Attributes
     ----------
@@ -98,10 +103,13 @@ class BreakawayEvent:
     force_noise_n : float
         Standard deviation of the force's noise.
     breakaway_error_n : float
-        Standard uncertainty of ``breakaway_force_n``, from noise and offset.
-    between_samples_n : float or None
-        What the load gains in one time step: about as much may the peak between two samples
-        exceed the recorded one.
+        Standard uncertainty of ``breakaway_force_n``, from noise and offset, and of a rig from
+        the load cell's gain and the inertia that was taken off.
+    sliding_error_n : float or None
+        That of ``sliding_force_n``, from offset and gain.
+    unseen_gain_n : float or None
+        What the load gains in one time step and in the time constant of the rig's filter: about
+        as much may the peak exceed the recorded one.
 
     """
 
@@ -121,7 +129,8 @@ class BreakawayEvent:
     reason: str
     force_noise_n: float
     breakaway_error_n: float
-    between_samples_n: float | None
+    sliding_error_n: float | None
+    unseen_gain_n: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,7 +139,7 @@ class BreakawayReport(OneLine):
 
     ``offset_n`` is None, with its reason, where it cannot be estimated. ``spikes`` are single
     samples of the force that stand alone and are taken for no load. ``gaps_s`` has the
-    stamps before and after each gap. ``settings`` has those that the search was made with.
+    stamps before and after each gap. ``rig`` and ``settings`` are what the search was made with.
     """
 
     name: str
@@ -148,6 +157,7 @@ class BreakawayReport(OneLine):
     rest_speed_m_per_s: float
     speed_window_s: float
     gaps_s: tuple[tuple[float, float], ...]
+    rig: RigFile | None
     settings: Mapping[str, float | None]
 
     def __repr__(self) -> str:
@@ -166,6 +176,7 @@ def find_breakaway_events(
     sliding_window_s: float | None = None,
     passed_share: float = 0.5,
     offset_n: float | None = None,
+    rig: RigFile | None = None,
 ) -> BreakawayReport:
     """Find every start from rest in a log, and the load that it took.
 
@@ -211,6 +222,10 @@ def find_breakaway_events(
     offset_n : float, optional
         Known offset of the force sensor; 0 leaves the force as it is. By default it is
         estimated.
+    rig : RigFile, optional
+        What lies between the part and the sensors: position and force at the part are searched,
+        a rise that its filter cannot follow makes a lower bound, and the uncertainty of the
+        load cell's gain goes into all errors.
 
     Returns
     -------
@@ -224,8 +239,8 @@ def find_breakaway_events(
 
     Notes
     -----
-    Not checked: inertia, so the acceleration times the mass must be small against friction,
-    or be taken off before; friction that differs between the directions, which looks like an
+    Not checked: inertia, so the acceleration times the part's mass must be small against
+    friction, or be taken off before; friction that differs between the directions, which looks like an
     offset; a delay between force and position; moves too small or too slow for the noise of
     the position; a log that begins within the standstill of a turn, which looks like a rest.
     The largest of many noisy samples exceeds the mean by about their noise.
@@ -255,22 +270,30 @@ def find_breakaway_events(
         "offset_n": offset_n,
     }
     _check_settings(settings)
+    places = spike_places(log.force_n)
+    quiet = Log(
+        force_n=without_spikes(log.force_n, places),
+        channels=log.channels,
+        source=log.source,
+        sha256=log.sha256,
+    )
+    at_part = quiet if rig is None else rig.at_part(quiet)
     cut = find_stretches(
-        log,
+        at_part,
         rest_speed_m_per_s=rest_speed_m_per_s,
         min_rest_s=min_rest_s,
         min_slip_m=min_slip_m,
         gap_s=gap_s,
     )
-    places = spike_places(log.force_n)
-    force = without_spikes(log.force_n, places)
-    levels = sliding_levels(cut, force)
+    levels = sliding_levels(cut, at_part.force_n)
     offset, error, why = (
         estimate_offset(levels) if offset_n is None else (float(offset_n), 0.0, "given")
     )
     search = _Search(
-        log.name, cut, force, places, noise(log.force_n), offset, error, sliding_window_s,
-        passed_share, friction(levels, offset),
+        log.name, cut, at_part.force_n, places, noise(at_part.force_n), offset, error,
+        sliding_window_s,
+        passed_share, friction(levels, offset), rig or RigFile(),
+        quiet.force_n - at_part.force_n,
     )  # fmt: skip
     events, refused = search.starts()
     return BreakawayReport(
@@ -289,6 +312,7 @@ def find_breakaway_events(
         rest_speed_m_per_s=cut.rest_speed_m_per_s,
         speed_window_s=cut.window_s,
         gaps_s=tuple((float(cut.t_s[g]), float(cut.t_s[g + 1])) for g in cut.gaps),
+        rig=rig,
         settings=settings,
     )
 
@@ -323,6 +347,8 @@ class _Search:
     window_s: float | None
     passed_share: float
     friction_n: float
+    rig: RigFile
+    inertia_n: Array
 
     @property
     def tolerance_n(self) -> float:
@@ -564,16 +590,24 @@ class _Search:
         )
 
     def _steep(self, start: _Start, peak: int) -> str:
-        """Say so where too few samples show the load's rise."""
+        """Say so where the load rises too fast for the samples, or for the rig's filter."""
         begin = self._load_start(start, peak)
         rise = start.load[peak] - start.load[begin]
-        inside = self._rising(start, begin, peak)
-        seen = np.count_nonzero(inside)
-        if seen >= RISING_SAMPLES or rise <= SIGNIFICANCE * self.noise_n:
+        places = np.flatnonzero(self._rising(start, begin, peak)) + begin
+        if rise <= SIGNIFICANCE * self.noise_n:
+            return ""
+        if places.size < RISING_SAMPLES:
+            return (
+                f"the load rises by {rise:.4g} N with {counted(places.size, 'sample')} on the way; "
+                "a higher peak may lie between two samples"
+            )
+        lasts = float(self.cut.t_s[places[-1]] - self.cut.t_s[places[0]])
+        filter_hz = self.rig.filter_hz
+        if filter_hz is None or lasts > 2.0 * FILTER_RISE / filter_hz:
             return ""
         return (
-            f"the load rises by {rise:.4g} N with {counted(int(seen), 'sample')} on the way; a "
-            "higher peak may lie between two samples"
+            f"the load rises within {lasts:.2g} s, which the rig's filter of {filter_hz:g} Hz does "
+            "not follow; the peak was higher"
         )
 
     def _saturated(self, peak: int) -> str:
@@ -614,7 +648,8 @@ class _Search:
         force = held - zero
         slide = None if start.level is None else start.level - zero
         ratio = None if slide is None or slide <= self.noise_n else force / slide
-        step = float(np.median(np.diff(t_s)))
+        gain = 0.01 * self.rig.force_calibration_percent
+        unknown = math.hypot(self.offset_error_n or 0.0, gain * force)
         return BreakawayEvent(
             time_s=float(t_s[peak]),
             direction=start.direction,
@@ -631,9 +666,19 @@ class _Search:
             is_lower_bound=bool(reason),
             reason=reason,
             force_noise_n=self.noise_n,
-            breakaway_error_n=math.hypot(self.noise_n, self.offset_error_n or 0.0),
-            between_samples_n=None if rate is None else abs(rate) * step,
+            breakaway_error_n=math.hypot(self.noise_n, unknown, float(self.inertia_n[peak])),
+            sliding_error_n=None
+            if slide is None
+            else math.hypot(self.offset_error_n or 0.0, gain * slide),
+            unseen_gain_n=None if rate is None else abs(rate) * self._blind_s,
         )
+
+    @property
+    def _blind_s(self) -> float:
+        """A time step, and the time constant of the rig's filter."""
+        filter_hz = self.rig.filter_hz
+        lag_s = 0.0 if filter_hz is None else 1.0 / (2.0 * math.pi * filter_hz)
+        return float(np.median(np.diff(self.cut.t_s))) + lag_s
 
     def _rate(self, start: _Start, begin: int, peak: int) -> float | None:
         """Fit the slope of the load between 10 and 90 % of its rise."""

@@ -36,6 +36,8 @@ from breakaway.measure.identification.record import (
     Span,
 )
 from breakaway.measure.identification.result import Identification, Internals
+from breakaway.measure.identification.rig_file import RigFile
+from breakaway.measure.identification.rig_intervals import with_rig
 from breakaway.measure.identification.settings import (
     at_least_one,
     check_run,
@@ -92,6 +94,7 @@ def identify(
     starts: int = 8,
     seed: int = 0,
     method: Method = "output_error",
+    rig: RigFile | None = None,
     progress: Progress | None = None,
 ) -> Identification:
     """Identify a joint by output error: the parameters whose simulation is nearest to the log.
@@ -152,6 +155,9 @@ def identify(
     method : {'output_error', 'least_squares'}
         ``least_squares`` fits the law 'coulomb' to ``imposed`` motion, inertia included, where the
         model is linear: see `identify_inertia_friction`.
+    rig : RigFile, optional
+        What lies between the part and the sensors. Without it the stiffness of the joint is a
+        bound from below, and the gain of the load cell counts as exact.
     progress : callable, optional
         Called with starts done and starts in all.
 
@@ -200,6 +206,7 @@ def identify(
         lowpass_hz=lowpass_hz,
         steps=steps,
         origin_m=_origin(log, position_dependent, origin_m),
+        rig=rig,
     )
     seen = examine(log, chosen, settings, (*free, *(fixed or {}), *(["repeats"] if repeats else [])))
     log, faults = seen.log, seen.faults
@@ -208,7 +215,7 @@ def identify(
     asked = prepare(log, chosen, settings, repeats, fixed or {}, free, guesses, method)
     if method == "least_squares":
         layout = asked.problem.layout
-        internal = _regressed(log, layout, chosen, settings, repeats, asked.held)
+        internal = _regressed(asked.rows.log, layout, chosen, settings, repeats, asked.held)
         best = Minimum(internal, 0.0, 1, converged=True)
         complete, starts, agreeing = True, 1, 1
     else:
@@ -294,7 +301,7 @@ class _Found:
         estimates = self._estimates(best, known)
         estimates = estimates if in_doubt is None else in_doubt.judged(estimates)
         combined = self._combined(best, known, estimates)
-        estimates = self._judged(estimates)
+        estimates = with_rig(self._judged(estimates), self.settings.rig)
         errors = residual * problem.scale
         rms = float(np.sqrt(np.mean(errors**2)))
         power = float(residual @ residual)
@@ -309,7 +316,7 @@ class _Found:
             spans=self.asked.spans,
             excitation=self.asked.excitation,
             estimates=tuple(_with_verdict(one, judged) for one in estimates),
-            combined=combined,
+            combined=tuple(with_rig(combined, self.settings.rig)),
             fixed=dict(self.asked.held),
             rms_error=rms,
             relative_error_percent=percent,

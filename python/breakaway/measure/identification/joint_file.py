@@ -18,6 +18,7 @@ from breakaway.errors import LogError, ScenarioError
 from breakaway.measure.identification.curve import peak_in_words
 from breakaway.measure.identification.inertia_friction import InertiaFrictionFit
 from breakaway.measure.identification.result import Identification
+from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.uncertainty import Posterior
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.distribution import Samples
@@ -49,6 +50,7 @@ class FitSettings(Model):
     repeats: list[list[float]]
     origin_m: float
     steps_per_row: Annotated[int, Field(ge=1)]
+    rig: RigFile | None = None
     loss: Name
     starts: Annotated[int, Field(ge=1)]
     seed: int
@@ -152,7 +154,8 @@ class JointFile(Model):
     joint: Joint
     rig: Rig
     standard_error: dict[str, NotNegative]
-    interval: dict[str, list[float]]
+    interval: dict[str, list[Annotated[float, Field(allow_inf_nan=True)]]]
+    """Name of a parameter -> its ends; the upper one is infinite for a bound from below."""
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
     not_identified: dict[str, Text]
@@ -420,6 +423,7 @@ def _provenance(found: Identification) -> Provenance:
             repeats=[list(span) for span in found.spans],
             origin_m=settings.origin_m,
             steps_per_row=settings.steps,
+            rig=settings.rig,
             loss=found.loss,
             starts=found.starts,
             seed=found.seed,

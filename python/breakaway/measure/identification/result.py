@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from breakaway.measure.identification.record import (
     Span,
     measured_rows,
 )
+from breakaway.measure.identification.rig_intervals import profile_with_rig
 from breakaway.measure.identification.settings import at_least_one, check_seed, known
 from breakaway.measure.identification.uncertainty import (
     Covariance,
@@ -182,7 +183,8 @@ class Identification(OneLine):
         place = self._place(name)
         error = math.sqrt(inner.covariance.matrix[place, place])
         weight = inner.covariance.weight
-        return profile(inner.problem, inner.best, inner.bounds, place, error, weight)
+        found = profile(inner.problem, inner.best, inner.bounds, place, error, weight)
+        return profile_with_rig(found, self[name].value, self.settings.rig)
 
     def posterior(
         self, samples: int = 10_000, *, seed: int = 0, progress: Progress | None = None
@@ -212,7 +214,7 @@ class Identification(OneLine):
         error = np.sqrt(np.diag(inner.covariance.matrix))
         spread = np.where(np.isfinite(error), np.minimum(error, 0.1 * (high - low)), 0.0)
         spread = np.maximum(spread, 1e-6 * (high - low))
-        return posterior(
+        found = posterior(
             inner.problem,
             inner.best,
             spread,
@@ -222,6 +224,7 @@ class Identification(OneLine):
             seed,
             progress,
         )
+        return replace(found, samples=self._spread(found.samples, seed))
 
     def draws(self, samples: int, *, seed: int = 0) -> dict[str, Array]:
         """Draw parameters from the normal distribution that the covariance gives.
@@ -253,9 +256,14 @@ class Identification(OneLine):
             center, matrix, samples, check_valid="ignore", method="svd"
         )
         drawn = {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
-        return {
+        mirrored = {
             one.name: np.abs(drawn[one.name]) if one.may_vanish else drawn[one.name] for one in free
         }
+        return self._spread(mirrored, seed)
+
+    def _spread(self, drawn: dict[str, Array], seed: int) -> dict[str, Array]:
+        """Return draws that are also spread by what is uncertain of the rig."""
+        return drawn if self.settings.rig is None else self.settings.rig.spread(drawn, seed)
 
     def _place(self, name: str) -> int:
         names = [one.name for one in self.estimates]

@@ -221,6 +221,8 @@ def _by_error(one: Estimate, found: Mapping[str, Estimate]) -> Verdict:
     if one.name == "stribeck_velocity_m_per_s" and ratio and ratio.low < 1.0 < ratio.high:
         because = "F_s / F_c is not distinct from 1, so it has no effect"
         return Verdict(one.name, False, because, _SPEEDS)
+    if one.identifiable and one.remark:
+        return Verdict(one.name, True, f"at least {one.low:.4g}: {one.remark}")
     if one.identifiable:
         return Verdict(one.name, True, f"95 % interval {one.low:.4g} to {one.high:.4g}")
     return Verdict(one.name, False, one.remark, _remedy(one.name, one.remark))
