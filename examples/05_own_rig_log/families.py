@@ -22,6 +22,7 @@ from rig import (
 )
 
 import breakaway as bk
+from breakaway.measure.identification.rig_file import RigFile
 
 
 def heavy(truth: Truth, case: int) -> Truth:
@@ -184,6 +185,13 @@ def rig_stiffness(truth: Truth, case: int) -> float:
     """Return the stiffness in N/m between the part and the sensor of its position."""
     rng = np.random.default_rng([20_260_005, case])
     return truth.stiffness_n_per_m / float(rng.uniform(1.0, 10.0))
+
+
+def rig_of(family: str, truth: Truth, case: int) -> RigFile:
+    """Return what is known of the rig: where its sensor is, or how soft it is."""
+    if family == "soft rig":
+        return RigFile(stiffness_n_per_m=rig_stiffness(truth, case))
+    return RigFile(position_sensor="part")
 
 
 FAMILIES = {
