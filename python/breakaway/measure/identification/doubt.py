@@ -48,6 +48,12 @@ FEWEST_TURNS = 4
 CHANCE = 0.001
 """Chance that residuals of a law that holds look as if they came back at each turn."""
 
+MATERIAL = 0.02
+"""Least mean error about turns that counts, as a share of the Coulomb level."""
+
+FEWEST_SLOW_ROWS = 10
+"""Fewest rows away from turns that are slower than v_s, so that sliding shows a peak."""
+
 EVALUATIONS = 60
 
 
@@ -55,17 +61,17 @@ EVALUATIONS = 60
 class Doubt:
     """Why a law may not hold, and the covariance of the internal parameters that allows for it.
 
-    ``turns`` counts the stretches of motion in one direction.
+    ``shows_peak`` is whether the part slides slowly enough, twice and away from turns.
     """
 
     because: str
     known: Covariance
-    turns: int
+    shows_peak: bool
 
     def judged(self, estimates: Sequence[Estimate]) -> list[Estimate]:
         """Take back what acts about turns, and a peak that sliding does not show twice."""
         ratio = next((one for one in estimates if one.name == "stiction_ratio"), None)
-        no_peak = self.turns < 2 or (ratio is not None and ratio.low < NO_PEAK)
+        no_peak = not self.shows_peak or (ratio is not None and ratio.low < NO_PEAK)
         peak = ("stiction_ratio", "stribeck_velocity_m_per_s") if no_peak else ()
         return [
             replace(one, identifiable=False, remark=f"the law is in doubt: {self.because}")
@@ -101,12 +107,15 @@ def doubt(
     turns = find_turns(x, v)
     deflection = _deflection_m(asked.problem.layout.values(best), asked)
     because = _preferred(asked, law, settings, loss, best, known.weight)
-    because = because or _comes_back(turns, residual, deflection)
+    least = MATERIAL * asked.sizes.coulomb_n / asked.problem.scale
+    because = because or _comes_back(turns, residual, deflection, least)
     if not because:
         return None
     about = turns.since_m < ABOUT_TURNS * deflection
     about |= turns.rows_since < ROWS_ABOUT_TURNS
-    return Doubt(because, _widened(asked, loss, best, known, ~about), turns.count)
+    slow = np.abs(v) < asked.problem.layout.values(best).get("stribeck_velocity_m_per_s", 0.0)
+    shows_peak = turns.count > 1 and int(np.sum(slow & ~about)) >= FEWEST_SLOW_ROWS
+    return Doubt(because, _widened(asked, loss, best, known, ~about), shows_peak)
 
 
 def events(asked: Prepared, settings: RunSettings, best: Array) -> dict[int, int]:
@@ -197,7 +206,7 @@ def _rival(
     return problem, starts, bounds
 
 
-def _comes_back(turns: Turns, residual: Array, deflection_m: float) -> str:
+def _comes_back(turns: Turns, residual: Array, deflection_m: float, least: float) -> str:
     """Say that residuals are alike at all turns, where they are; empty where they are not.
 
     Each bin of the way since a turn is a t-test of the mean over turns, folded by the direction.
@@ -215,7 +224,7 @@ def _comes_back(turns: Turns, residual: Array, deflection_m: float) -> str:
             continue
         error = float(np.std(means, ddof=1)) / np.sqrt(len(means))
         limit = float(student.isf(0.5 * CHANCE / len(EDGES), len(means) - 1))
-        if abs(float(np.mean(means))) > limit * error:
+        if abs(float(np.mean(means))) > max(limit * error, least):
             return "the errors of the law about turns come back at every turn"
     return ""
 
