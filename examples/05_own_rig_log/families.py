@@ -195,7 +195,9 @@ def soft_rig(truth: Truth, case: int) -> bk.Log:
     """Record the position of a drive behind a spring, softer than the joint."""
     log = to_and_fro(truth, case)
     x = log.position_m + log.force_n / rig_stiffness(truth, case)
-    return replace(log, position_m=np.round(x / truth.position_quantum_m) * truth.position_quantum_m)
+    return replace(
+        log, position_m=np.round(x / truth.position_quantum_m) * truth.position_quantum_m
+    )
 
 
 def rig_stiffness(truth: Truth, case: int) -> float:

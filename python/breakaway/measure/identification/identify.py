@@ -208,7 +208,9 @@ def identify(
         origin_m=_origin(log, position_dependent, origin_m),
         rig=rig,
     )
-    seen = examine(log, chosen, settings, (*free, *(fixed or {}), *(["repeats"] if repeats else [])))
+    seen = examine(
+        log, chosen, settings, (*free, *(fixed or {}), *(["repeats"] if repeats else []))
+    )
     log, faults = seen.log, seen.faults
     modeled = {} if method == "least_squares" else seen.modeled
     free, guesses = (*free, *modeled), {**modeled, **(guesses or {})}
