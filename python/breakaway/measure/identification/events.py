@@ -240,8 +240,8 @@ def find_breakaway_events(
     Notes
     -----
     Not checked: inertia, so the acceleration times the part's mass must be small against
-    friction, or be taken off before; friction that differs between the directions, which looks like an
-    offset; a delay between force and position; moves too small or too slow for the noise of
+    friction, or be taken off before; friction that differs between the directions, which looks
+    like an offset; a delay between force and position; moves too small or too slow for the noise of
     the position; a log that begins within the standstill of a turn, which looks like a rest.
     The largest of many noisy samples exceeds the mean by about their noise.
 

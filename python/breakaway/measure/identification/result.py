@@ -288,6 +288,7 @@ def as_dict(found: Identification) -> dict[str, Any]:
         "asymmetric": found.law.asymmetric,
         "position_dependent": found.law.position_dependent,
         "motion": found.settings.motion,
+        "rig": None if found.settings.rig is None else found.settings.rig.model_dump(),
         "excitation": vars(found.excitation),
         "estimates": [vars(one) for one in found.estimates],
         "combined": [vars(one) for one in found.combined],

@@ -55,7 +55,7 @@ class RigFile(Model):
     """Cutoff of the low-pass in front of the sampling of the force, in Hz."""
     force_calibration_percent: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
     """Standard uncertainty of the load cell's gain, in percent of the force."""
-    notes: Annotated[list[Text], Field(default_factory=list)]
+    notes: list[Text] = Field(default_factory=list)
     """Where the figures come from, and what they leave open."""
 
     @model_validator(mode="after")

@@ -24,6 +24,11 @@ TOO_UNCERTAIN = (
 )
 
 
+def stiffness_is_told(rig: RigFile | None) -> bool:
+    """Whether a fit tells the stiffness of the joint alone."""
+    return rig is not None and rig.stiffness_is_told
+
+
 def with_rig(estimates: Sequence[Estimate], rig: RigFile | None) -> list[Estimate]:
     """Return estimates whose errors and intervals allow for the rig.
 
@@ -38,7 +43,7 @@ def _with_rig(one: Estimate, rig: RigFile | None) -> Estimate:
     error = known.error(one.name, one.value, one.standard_error)
     remark = one.remark
     if one.name == "stiffness_n_per_m" and one.identifiable:
-        if not known.stiffness_is_told:
+        if not stiffness_is_told(rig):
             high, remark = math.inf, IN_SERIES
         elif math.isinf(high):
             remark = TOO_UNCERTAIN

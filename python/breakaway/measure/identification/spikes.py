@@ -1,4 +1,4 @@
-"""Single samples of a channel that stand alone, as disturbed transmissions and loose contacts do."""
+"""Single samples of a channel that stand alone, as a disturbed transmission leaves them."""
 
 from __future__ import annotations
 
