@@ -112,8 +112,9 @@ def _table(reports: list[BreakawayReport]) -> Sheet:
 
 def _spikes(report: BreakawayReport) -> str:
     first = report.spikes[0]
+    stand = "stands" if len(report.spikes) == 1 else "stand"
     return (
-        f"{counted(len(report.spikes), 'single sample')} of the force stand alone, the first of "
+        f"{counted(len(report.spikes), 'single sample')} of the force {stand} alone, the first of "
         f"{show('force_n', first.force_n)} at {first.time_s:.6g} s; they are not taken for load"
     )
 
