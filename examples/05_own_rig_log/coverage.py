@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import NamedTuple
 
-from families import FAMILIES, log_of
+from families import FAMILIES, log_of, rig_of
 from friction import LAWS
 from rig import Truth
 
@@ -30,9 +30,10 @@ def judged(family: str, law: str, case: int) -> Judged:
     """Identify one rig; say of each parameter whether its interval holds the truth."""
     truth, log = log_of(family, law, case)
     try:
-        found = bk.identify(log, law="lugre", starts=2)
+        found = bk.identify(log, law="lugre", starts=2, rig=rig_of(family, truth, case))
     except bk.LogError:
         return Judged(family, ((REFUSED, "not told"),), ())
+    named = tuple(one.kind for one in found.faults)
     out = []
     for one in (*found.estimates, *found.combined):
         inside = one.low <= getattr(truth, one.name) <= one.high
@@ -41,7 +42,7 @@ def judged(family: str, law: str, case: int) -> Judged:
     fitted = {one.name for one in found.estimates}
     held = [one.parameter for one in found.verdicts if one.parameter not in fitted]
     out += [(name, "not told") for name in held if hasattr(truth, name)]
-    return Judged(family, tuple(out), ())
+    return Judged(family, tuple(out), named)
 
 
 def work(args: argparse.Namespace) -> list[tuple[str, str, int]]:
@@ -78,6 +79,12 @@ def show(family: str, done: list[Judged]) -> None:
         inside, outside = inside + held, outside + missed
     share = f"{100 * inside / (inside + outside):.1f} %" if inside + outside else ""
     print(f"  {'all that were told':28} {inside:7} {outside:8} {'':9} {share:>9}")
+    fault = FAMILIES[family].fault
+    falsely = Counter(kind for one in done for kind in set(one.named) - {fault})
+    if fault:
+        print(f"  {fault} named in {sum(fault in one.named for one in done)} of {len(done)} logs")
+    for kind, count in falsely.items():
+        print(f"  {kind} named falsely in {count} of {len(done)} logs")
 
 
 def main() -> None:

@@ -22,6 +22,7 @@ from rig import (
 )
 
 import breakaway as bk
+from breakaway.measure.identification.rig_file import RigFile
 
 
 def heavy(truth: Truth, case: int) -> Truth:
@@ -30,6 +31,26 @@ def heavy(truth: Truth, case: int) -> Truth:
     share = float(np.exp(rng.uniform(np.log(0.3), np.log(3.0)))) if case % 2 else 0.0
     fastest = truth.top_speed_m_per_s * 2.0 * np.pi * max(hertz for _, hertz in WAVES)
     return replace(truth, mass_kg=share * truth.coulomb_n / fastest)
+
+
+def late(truth: Truth, case: int) -> Truth:
+    """Delay the position of a part by 1 or 5 ms."""
+    return replace(heavy(truth, case), delay_s=5e-3 if case % 2 else 1e-3)
+
+
+def with_drift(truth: Truth, case: int) -> Truth:
+    """Let the force drift by 0.3 of the Coulomb level over the record."""
+    return replace(heavy(truth, case), drift_n_per_s=0.3 * truth.coulomb_n / DURATION_S)
+
+
+def with_warming(truth: Truth, case: int) -> Truth:
+    """Let friction fall to 70 % over the record."""
+    return replace(heavy(truth, case), warming_per_s=-0.3 / DURATION_S)
+
+
+def with_play(truth: Truth, case: int) -> Truth:
+    """Put a play of 20 um between drive and part."""
+    return replace(heavy(truth, case), backlash_m=20e-6)
 
 
 @dataclass(frozen=True)
@@ -124,7 +145,7 @@ def stick_slip(truth: Truth, case: int) -> bk.Log:
 def delayed(truth: Truth, case: int) -> bk.Log:
     """Record the position late by 1 to 5 ms."""
     log = to_and_fro(truth, case)
-    rows = 1 + 4 * (case % 2)
+    rows = round(truth.delay_s * ROWS_PER_S)
     late = np.concatenate([np.full(rows, log.position_m[0]), log.position_m[:-rows]])
     return replace(log, position_m=late)
 
@@ -132,16 +153,13 @@ def delayed(truth: Truth, case: int) -> bk.Log:
 def drifting(truth: Truth, case: int) -> bk.Log:
     """Let the force drift by 0.3 of the Coulomb level."""
     log = to_and_fro(truth, case)
-    return replace(log, force_n=log.force_n + 0.3 * truth.coulomb_n * log.t_s / DURATION_S)
+    return replace(log, force_n=log.force_n + truth.drift_n_per_s * log.t_s)
 
 
 def warming(truth: Truth, case: int) -> bk.Log:
     """Let friction fall to 70 % over the record."""
     t_s = fine_times(DURATION_S)
-    return along(truth, two_way(truth, t_s), case, 1.0 - 0.3 * t_s / DURATION_S)
-
-
-BACKLASH_M = 20e-6
+    return along(truth, two_way(truth, t_s), case, 1.0 + truth.warming_per_s * t_s)
 
 
 def backlash(truth: Truth, case: int) -> bk.Log:
@@ -152,9 +170,9 @@ def backlash(truth: Truth, case: int) -> bk.Log:
     force, resisted, ahead = np.zeros_like(drive), 0.0, 0.0
     for step, move in enumerate(np.diff(drive).tolist(), start=1):
         side = 1.0 if ahead == 0.0 else -1.0
-        touches = resisted * side > 0.0 and ahead in (0.0, BACKLASH_M)
+        touches = resisted * side > 0.0 and ahead in (0.0, truth.backlash_m)
         gap = ahead - move
-        ahead = ahead if touches else min(max(gap, 0.0), BACKLASH_M)
+        ahead = ahead if touches else min(max(gap, 0.0), truth.backlash_m)
         moves = move if touches else ahead - gap
         resisted = joint.move(moves, h) if moves else 0.0
         if touches and resisted * side < 0.0:
@@ -186,16 +204,23 @@ def rig_stiffness(truth: Truth, case: int) -> float:
     return truth.stiffness_n_per_m / float(rng.uniform(1.0, 10.0))
 
 
+def rig_of(family: str, truth: Truth, case: int) -> RigFile:
+    """Return what is known of the rig: where its sensor is, or how soft it is."""
+    if family == "soft rig":
+        return RigFile(stiffness_n_per_m=rig_stiffness(truth, case))
+    return RigFile(position_sensor="part")
+
+
 FAMILIES = {
     "two-way": Family(to_and_fro),
     "one-way": Family(one_way),
     "stick-slip": Family(stick_slip, part=slipping),
     "presliding only": Family(presliding),
     "short": Family(short),
-    "delayed": Family(delayed, "delay"),
-    "drifting": Family(drifting, "drift"),
-    "warming": Family(warming, "warming"),
-    "backlash": Family(backlash, "backlash"),
+    "delayed": Family(delayed, "delay", late),
+    "drifting": Family(drifting, "drift", with_drift),
+    "warming": Family(warming, "warming", with_warming),
+    "backlash": Family(backlash, "backlash", with_play),
     "spikes": Family(spiked, "spikes"),
     "soft rig": Family(soft_rig),
 }

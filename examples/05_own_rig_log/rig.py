@@ -28,6 +28,10 @@ class Truth(Levels):
     position_quantum_m: float
     mass_kg: float = 0.0
     law: str = "lugre"
+    delay_s: float = 0.0
+    drift_n_per_s: float = 0.0
+    warming_per_s: float = 0.0
+    backlash_m: float = 0.0
 
     @property
     def stiction_n(self) -> float:

@@ -15,7 +15,7 @@ use crate::variation::Variation;
 /// m dv/dt = F + F_out − R(x, v, z) − F_0 − d t − k_r x
 /// ```
 ///
-/// The friction's levels are multiplied by 1 + w t; t counts from the middle of the log. A free travel b
+/// The friction's levels are multiplied by 1 + w t; t counts from the start of the log. A free travel b
 /// lies between what moves and the friction: the bristle lets go, then nothing resists over b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rig<R> {
@@ -103,7 +103,7 @@ pub struct Row<R> {
     pub held_force_n: R,
     /// F_out in N: a known force beside the drive's, up to the next row.
     pub outside_force_n: R,
-    /// t from the middle of the log, s.
+    /// t from the start of the log, s.
     pub time_s: R,
 }
 

@@ -112,7 +112,7 @@ def _estimates(found: Identification) -> Sheet:
         numbers=["value", "std. error", "95 % interval"],
         prose=["told by the log"],
     )
-    for one in found.estimates:
+    for one in (*found.estimates, *found.combined):
         words, unit = split_unit(one.name)
         value, error = show_uncertain(one.value, one.standard_error)
         told = one.remark or "yes"

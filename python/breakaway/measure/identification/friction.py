@@ -71,7 +71,7 @@ def simulated_friction(found: Identification) -> FrictionPath:
 def _path(
     found: Identification, beside: Array, x: Array, v: Array, a: Array, force: Array
 ) -> FrictionPath:
-    """Take off inertia and rig; ``beside`` are the outside force and the time from the middle."""
+    """Take off inertia and rig; ``beside`` are the outside force and the time from the start."""
     numbers = found.internals.problem.layout.numbers(found.internals.best)
     named = ("mass_kg", "spring_n_per_m", "drift_n_per_s")
     mass, spring, drift = (numbers[SHARED.index(name)] for name in named)

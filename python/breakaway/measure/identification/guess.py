@@ -30,10 +30,14 @@ REACH = 1e4
 
 @dataclass(frozen=True)
 class Scales:
-    """Rough size of everything in a log, which guesses and bounds come from."""
+    """Rough size of everything in a log, which guesses and bounds come from.
+
+    ``hidden_mass_kg`` is the largest mass that would not show, 0 where one shows or is given.
+    """
 
     mass_kg: float
     mass_shows: bool
+    hidden_mass_kg: float
     coulomb_n: float
     viscous_n_s_per_m: float
     offset_n: float
@@ -81,7 +85,7 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     if np.all(columns[:, 2] == columns[0, 2]):
         columns = columns[:, :3]
     size = float(np.sqrt(np.mean(force**2)))
-    inertia = mass_kg if mass_kg is not None else _inertia(columns, force[moving], size)
+    inertia, hidden = (mass_kg, 0.0) if mass_kg is not None else _inertia(columns, force[moving])
     if mass_kg is not None or inertia == 0.0:
         columns[:, 0] = 0.0
     found = np.linalg.lstsq(columns, (force - held)[moving], rcond=None)[0]
@@ -91,6 +95,7 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     return Scales(
         mass_kg=inertia if inertia > 0.0 else fallback,
         mass_shows=inertia > 0.0,
+        hidden_mass_kg=hidden,
         coulomb_n=coulomb,
         viscous_n_s_per_m=max(float(found[1]), 0.02 * coulomb / speed),
         offset_n=float(found[3]),
@@ -104,17 +109,19 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     )
 
 
-def _inertia(columns: Array, force: Array, size: float) -> float:
-    """Return the mass in kg that the regression finds, or 0 where the force hardly shows it."""
+def _inertia(columns: Array, force: Array) -> tuple[float, float]:
+    """Return the mass in kg that the regression finds, and the largest that would not show."""
+    size = float(np.sqrt(np.mean(force**2)))
+    share_kg = size / max(float(np.sqrt(np.mean(columns[:, 0] ** 2))), 1e-300)
     found, _, rank, _ = np.linalg.lstsq(columns, force, rcond=None)
     if rank < columns.shape[1]:
-        return 0.0
+        return 0.0, INERTIA_SHARE * share_kg
     residual = force - columns @ found
     spread = np.linalg.inv(columns.T @ columns)[0, 0]
-    error = float(np.sqrt(spread * float(residual @ residual) / len(force)))
-    share = abs(float(found[0])) * float(np.sqrt(np.mean(columns[:, 0] ** 2))) / size
-    shows = found[0] > INERTIA_ERRORS * error and share > INERTIA_SHARE
-    return float(found[0]) if shows else 0.0
+    error = INERTIA_ERRORS * float(np.sqrt(spread * float(residual @ residual) / len(force)))
+    if found[0] > max(error, INERTIA_SHARE * share_kg):
+        return float(found[0]), 0.0
+    return 0.0, min(max(float(found[0]), 0.0) + error, INERTIA_SHARE * share_kg)
 
 
 def _velocity_noise(rows: Rows, noise_m: float) -> float:
@@ -189,7 +196,7 @@ def bounds_of(
     if parameter.may_vanish:
         high = guess * REACH
     if parameter.name == "warming_per_s":
-        low, high = -1.9 / sizes.duration_s, 1.9 / sizes.duration_s
+        low, high = -0.95 / sizes.duration_s, 19.0 / sizes.duration_s
     if parameter.name == "stiffness_n_per_m" and settings.motion != "imposed":
         high = sizes.stiffest(settings)
     return low, high

@@ -12,7 +12,10 @@ import numpy as np
 from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
-from breakaway.measure.identification.doubt import doubt, events
+from breakaway.measure.identification.doubt import doubt, events, with_hidden_mass
+from breakaway.measure.identification.faults.delay import find_delay, with_delay
+from breakaway.measure.identification.faults.examine import examine
+from breakaway.measure.identification.faults.fault import Fault
 from breakaway.measure.identification.identifiability import Prepared, prepare
 from breakaway.measure.identification.inertia_friction import identify_inertia_friction
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
@@ -21,6 +24,7 @@ from breakaway.measure.identification.output_error import (
     Loss,
     Minimum,
     Progress,
+    minimize,
     minimize_all,
     screened_starts,
 )
@@ -204,7 +208,11 @@ def identify(
         origin_m=_origin(log, position_dependent, origin_m),
         rig=rig,
     )
-    asked = prepare(log, chosen, settings, repeats, fixed or {}, free, guesses or {}, method)
+    seen = examine(log, chosen, settings, (*free, *(fixed or {}), *(["repeats"] if repeats else [])))
+    log, faults = seen.log, seen.faults
+    modeled = {} if method == "least_squares" else seen.modeled
+    free, guesses = (*free, *modeled), {**modeled, **(guesses or {})}
+    asked = prepare(log, chosen, settings, repeats, fixed or {}, free, guesses, method)
     if method == "least_squares":
         layout = asked.problem.layout
         internal = _regressed(asked.rows.log, layout, chosen, settings, repeats, asked.held)
@@ -217,7 +225,12 @@ def identify(
         best, agreeing, complete = minimize_all(
             asked.problem, drawn, asked.bounds, loss, MOST_EVALUATIONS, progress
         )
-    found = _Found(log, chosen, settings, asked, loss, seed)
+        late = find_delay(log, chosen, settings, asked.problem.layout.values(best.internal))
+        faults = faults if late is None else (*faults, late.fault)
+        if late and motion != "closed_loop" and "delay_s" not in (*free, *(fixed or {})):
+            asked = with_delay(log, chosen, settings, repeats, asked, late, free, best.internal)
+            best = minimize(asked.problem, asked.guess, asked.bounds, loss, MOST_EVALUATIONS)
+    found = _Found(log, chosen, settings, asked, loss, seed, faults)
     return found.result(best.internal, best.converged, complete, starts, agreeing)
 
 
@@ -265,6 +278,7 @@ class _Found:
     asked: Prepared
     loss: Loss
     seed: int
+    faults: tuple[Fault, ...]
 
     def result(
         self,
@@ -279,6 +293,7 @@ class _Found:
         weighted = _robust(self.loss, residual)
         known = covariance(weighted * residual, weighted[:, None] * slopes)
         known = few_events(known, events(self.asked, self.settings, best))
+        known = with_hidden_mass(known, self.asked, slopes)
         in_doubt = None
         if self.asked.excitation.broke_away:
             in_doubt = doubt(self.asked, self.law, self.settings, self.loss, best, known)
@@ -309,7 +324,9 @@ class _Found:
             effective_rows=known.weight * len(residual),
             condition_number=known.condition_number,
             verdicts=judged,
+            faults=self.faults,
             notes=(
+                *map(str, self.faults),
                 *self._warnings(best, percent),
                 *self._notes(known, complete, converged, starts, agreeing),
             ),
@@ -341,7 +358,7 @@ class _Found:
     ) -> tuple[Estimate, ...]:
         """Return what the log tells of friction and offset together, where it goes one way."""
         shown = self.asked.excitation
-        if not self._goes_one_way or shown.sticks_and_slips or not shown.broke_away:
+        if not self._goes_one_way or shown.slips or not shown.broke_away:
             return ()
         return sums(self.asked.problem.layout, best, known.matrix, shown, estimates)
 

@@ -101,7 +101,7 @@ def measured_rows(log: Log, settings: RunSettings) -> Rows:
     rate = np.gradient(target, t_s)
     columns = [x - origin, velocity, acceleration, force, target - origin, rate]
     columns += [np.append(steps, steps[-1]), np.append(np.diff(path) / steps, 0.0), held]
-    columns += [log.driving_force_n - force, t_s - 0.5 * (t_s[0] + t_s[-1])]
+    columns += [log.driving_force_n - force, t_s - t_s[0]]
     return Rows(log, np.array(columns), even, lowpass_hz)
 
 

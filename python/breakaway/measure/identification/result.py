@@ -13,6 +13,7 @@ from breakaway.base.arguments import check_arguments
 from breakaway.base.one_line import OneLine, counted
 from breakaway.base.text import shown
 from breakaway.errors import LogError
+from breakaway.measure.identification.faults.fault import Fault
 from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.output_error import Problem, Progress
 from breakaway.measure.identification.prediction import Prediction, predict_rows
@@ -61,6 +62,7 @@ class Identification(OneLine):
     effective_rows: float
     condition_number: float
     verdicts: tuple[Verdict, ...]
+    faults: tuple[Fault, ...]
     notes: tuple[str, ...]
     converged: bool
     complete: bool
@@ -297,6 +299,7 @@ def as_dict(found: Identification) -> dict[str, Any]:
         "bic": found.bic,
         "condition_number": found.condition_number,
         "verdicts": [vars(one) for one in found.verdicts],
+        "faults": [vars(one) for one in found.faults],
         "notes": list(found.notes),
         "converged": found.converged,
         "complete": found.complete,

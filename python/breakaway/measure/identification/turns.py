@@ -30,18 +30,18 @@ FEWEST_ROWS = 8
 FEWEST_SLIPS = 3
 """Fewest slips that make stick-slip."""
 
-RESOLVED_ROWS = 50
-"""Rows in which a slip is resolved: with fewer, the low-pass of the motion takes part of it."""
-
 FALL = 0.05
 """Share of the force by which it falls in a slip, at least."""
+
+HALFWAY = (0.25, 0.75)
+"""Share of the fall that has happened halfway, for a spring 0.5; at a peak of friction nearly 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Turns:
     """Rows cut where the direction changes.
 
-    ``direction`` is that of the last row that moved, ``stretch`` the number of the stretch that a
+    ``direction`` is that of the stretch, ``stretch`` the number of the stretch that a
     row is of, ``since_m`` the way since its turn and ``rows_since`` the rows since it.
     """
 
@@ -57,15 +57,20 @@ class Turns:
 
 
 def find_turns(x: Array, v: Array) -> Turns:
-    """Cut rows where the direction changes; what stands still goes on in the same direction."""
+    """Cut rows where the part is farthest before it goes back; standing still is no turn."""
     moving = np.flatnonzero(np.abs(v) > STILL * float(np.quantile(np.abs(v), 0.99)))
-    last = np.maximum(np.searchsorted(moving, np.arange(len(v)), side="right") - 1, 0)
-    direction = np.sign(v[moving[last]])
-    changes = np.concatenate([[False], np.diff(direction) != 0.0])
+    signs = np.sign(v[moving])
+    starts = [0]
+    for place in np.flatnonzero(np.diff(signs)):
+        before, after = moving[place], moving[place + 1]
+        starts.append(int(before + np.argmax(signs[place] * x[before : after + 1])))
+    changes = np.zeros(len(x), dtype=np.intp)
+    changes[starts[1:]] = 1
     stretch = np.cumsum(changes)
-    first = np.concatenate([[0], np.flatnonzero(changes)])[stretch]
+    first = np.array(starts)[stretch]
     way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
-    return Turns(direction, stretch, way - way[first], np.arange(len(v)) - first)
+    directions = signs[np.concatenate([[0], np.flatnonzero(np.diff(signs)) + 1])]
+    return Turns(directions[stretch], stretch, way - way[first], np.arange(len(v)) - first)
 
 
 def broke_away(
@@ -90,7 +95,7 @@ def broke_away(
 
 def _change(turns: Turns, here: Whole, force: Array) -> Array:
     """Return the force since a turn, in the direction of motion."""
-    before = float(np.median(force[max(here[0] - 1, 0) : here[0] + 2]))
+    before = float(np.median(force[max(here[0] - 2, 0) : here[0] + 1]))
     change: Array = turns.direction[here] * (force[here] - before)
     return change
 
@@ -110,23 +115,34 @@ def passages(v: Array, slow_m_per_s: float) -> int:
     return int(np.count_nonzero(np.diff(slow) > 0) + slow[0])
 
 
-def short_slips(v: Array, force: Array) -> tuple[int, int]:
+def stick_slip(x: Array, v: Array, force: Array) -> tuple[int, int]:
     """Return how often a part slips after it stuck, and the median rows of a slip.
 
-    A slip is faster than a fifth of the top speed, and the force falls in it; between slips the
-    part stands nearly still. Zero where that is not how the part moves.
+    A slip is faster than a fifth of the top speed, and the part stands nearly still before the
+    next one in the same direction. Over a slip the force falls in step with the way, as that of
+    the spring behind which it slips. Zero where that is not how the part moves.
     """
     speed = np.abs(v)
     top = float(np.quantile(speed, 0.999))
     fast = np.concatenate([[0], (speed > FASTER * top).astype(int), [0]])
     edges = np.flatnonzero(np.diff(fast))
-    starts, ends = edges[::2], np.minimum(edges[1::2], len(v) - 1)
-    if len(starts) < FEWEST_SLIPS or np.mean(speed < STILL * top) < 0.5:
+    starts, ends = np.maximum(edges[::2] - 1, 0), np.minimum(edges[1::2], len(v) - 1)
+    ways = x[ends] - x[starts]
+    onward = np.abs(ways) > 0.3 * np.abs(ways).max(initial=0.0)
+    starts, ends, ways = starts[onward], ends[onward], ways[onward]
+    if len(starts) < FEWEST_SLIPS:
         return 0, 0
-    directions = np.sign(v[(starts + ends) // 2])
-    stuck = [bool(np.any(speed[a:b] < STILL * top)) for a, b in zip(ends[:-1], starts[1:], strict=True)]
-    again = np.array(stuck) & (directions[1:] == directions[:-1])
-    fall = directions * (force[np.maximum(starts - 1, 0)] - force[ends])
-    if np.sum(again) < FEWEST_SLIPS - 1 or np.median(fall) < FALL * np.median(np.abs(force)):
+    pauses = zip(ends[:-1], starts[1:], strict=True)
+    stuck = np.array([bool(np.any(speed[end : start + 1] < STILL * top)) for end, start in pauses])
+    again = stuck & (np.sign(ways[1:]) == np.sign(ways[:-1]))
+    falls = np.sign(ways) * (force[starts] - force[ends])
+    shares = [
+        float(np.interp(0.5, (x[a : b + 1] - x[a]) / way, (force[a] - force[a : b + 1]) / fall))
+        for a, b, way, fall in zip(starts, ends, ways, np.sign(ways) * falls, strict=True)
+        if fall != 0.0
+    ]
+    falls_enough = np.median(falls) > FALL * np.median(np.abs(force))
+    in_step = bool(shares) and HALFWAY[0] < np.median(shares) < HALFWAY[1]
+    if np.sum(again) < FEWEST_SLIPS - 1 or not (falls_enough and in_step):
         return 0, 0
-    return len(starts), int(np.median(ends - starts))
+    return len(starts), int(np.median(ends - starts)) - 1

@@ -15,11 +15,10 @@ from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.record import MotionKind, Rows, RunSettings
 from breakaway.measure.identification.stretches import find_stretches
 from breakaway.measure.identification.turns import (
-    RESOLVED_ROWS,
     STILL,
     broke_away,
     find_turns,
-    short_slips,
+    stick_slip,
 )
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
@@ -111,11 +110,6 @@ class Excitation:
         )
 
     @property
-    def sticks_and_slips(self) -> bool:
-        """Whether the part slips in so few rows that its motion is not resolved."""
-        return 0 < self.slip_rows < RESOLVED_ROWS
-
-    @property
     def speed_ratio(self) -> float:
         """Fast over slow speed."""
         return self.fast_speed_m_per_s / max(self.slow_speed_m_per_s, 1e-300)
@@ -147,7 +141,7 @@ def excitation(rows: Rows, places: Places) -> Excitation:
     both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
     both = both and (slides is None or slides[0] == slides[1])
     direction = 0 if both else int(np.sign(np.median(sign)))
-    slips, slip_rows = short_slips(v, force)
+    slips, slip_rows = stick_slip(x, v, force)
     still = speed < STILL * top
     return Excitation(
         slow_speed_m_per_s=slow,
@@ -256,8 +250,8 @@ _REMEDIES = {
 _REMEDIES_BY_REASON = {
     "only one way": "let the part slide both ways, or fix the offset (`fixed`, --fix)",
     "never": "load the joint until it slides, in both directions",
-    "stick-slip": "pull faster or through a stiffer drive until the part slides steadily, or sample "
-    f"each slip at {RESOLVED_ROWS} rows; `breakaway events` tells the force at which each one began",
+    "stick-slip": "pull faster or through a stiffer drive, until the part slides steadily; "
+    "`breakaway events` tells the force at which each slip began",
 }
 
 
@@ -328,10 +322,10 @@ def untold(
         out |= {name: rest for name in names if name.startswith("offset")}
         loss = "below breakaway, friction that slips in part looks like a damper"
         out["damping_n_s_per_m"] = loss
-    if shown.sticks_and_slips:
+    if shown.slips:
         slips = (
-            f"stick-slip: each of {shown.slips} slips is about {shown.slip_rows} rows, too few to "
-            "show how the part moves in it"
+            f"stick-slip: {shown.slips} slips of about {shown.slip_rows} rows, in which force and "
+            "motion follow from each other; inertia and friction look alike"
         )
         out |= dict.fromkeys(names, slips)
     return {name: because for name, because in out.items() if name in names}

@@ -257,7 +257,7 @@ def _parameters(found: Identification, profiles: Sequence[Profile]) -> list[dict
     profiled = {one.name: one for one in profiles}
     rows = [
         _parameter(one, because.get(one.name, ""), profiled.get(one.name))
-        for one in found.estimates
+        for one in (*found.estimates, *found.combined)
     ]
     return rows + [_held(name, value) for name, value in found.fixed.items()]
 
