@@ -9,6 +9,7 @@ from breakaway.measure.identification.comparison import ComparedLaw, compare_law
 from breakaway.measure.identification.events import (
     BreakawayEvent,
     BreakawayReport,
+    Spike,
     find_breakaway_events,
 )
 from breakaway.measure.identification.identifiability import Identifiability, identifiability
@@ -27,7 +28,6 @@ from breakaway.measure.identification.prediction import Prediction
 from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.sliding import Reversal, SlidingLevel
-from breakaway.measure.identification.spikes import Spike
 from breakaway.measure.identification.uncertainty import Posterior, Profile
 from breakaway.measure.identification.verdicts import Estimate, Excitation, Verdict
 
