@@ -1,4 +1,4 @@
-"""What pulls of a rig without a joint tell of the rig: against a part that is held, or with none."""
+"""What pulls without a joint tell of a rig: against a part that is held, or with no part."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy import signal
 
 from breakaway.base.arguments import check_arguments
@@ -178,9 +179,7 @@ def _held(log: Log) -> tuple[list[BlankFigure], list[str]]:
     low, high = compliance - QUANTILE * error, compliance + QUANTILE * error
     upper = 1.0 / low if low > 0.0 else math.inf
     stiffness = 1.0 / compliance
-    figure = BlankFigure(
-        "stiffness_n_per_m", stiffness, stiffness**2 * error, 1.0 / high, upper
-    )
+    figure = BlankFigure("stiffness_n_per_m", stiffness, stiffness**2 * error, 1.0 / high, upper)
     return [figure], [*notes, *_play(log, compliance, rows)]
 
 
@@ -203,7 +202,7 @@ def _bend(force: Array, position: Array) -> float:
     return high - low if significant else 0.0
 
 
-def _play(log: Log, compliance: float, rows: Array) -> list[str]:
+def _play(log: Log, compliance: float, rows: npt.NDArray[np.intp]) -> list[str]:
     """Say how far the rig moves before it is loaded, where that shows."""
     loaded = log.position_m[rows] - compliance * log.force_n[rows]
     before = log.position_m[0] - compliance * log.force_n[0]
@@ -233,7 +232,8 @@ def _free(log: Log) -> tuple[list[BlankFigure], list[str]]:
     mass, error = float(found[0]), math.sqrt(float(known.matrix[0, 0]))
     if not mass > TOLD * error:
         notes.append(
-            f"{log.name}: mass_kg {mass:.3g} ± {error:.2g} is not distinct from 0; accelerate harder"
+            f"{log.name}: mass_kg {mass:.3g} ± {error:.2g} is not distinct from 0; accelerate "
+            "harder"
         )
         return [], notes
     ends = mass - QUANTILE * error, mass + QUANTILE * error
@@ -243,5 +243,6 @@ def _free(log: Log) -> tuple[list[BlankFigure], list[str]]:
 def _check_rows(log: Log, count: int, which: str) -> None:
     if count < FEWEST_ROWS:
         raise LogError(
-            f"{log.name}: {count} rows {which}; at least {FEWEST_ROWS} are needed: record for longer"
+            f"{log.name}: {count} rows {which}; at least {FEWEST_ROWS} are needed: record for "
+            "longer"
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +86,7 @@ def _bands(speed: Array) -> list[NDArray[np.bool_]]:
     bands = [
         (np.sign(speed) == side) & (size >= low) & (size <= high)
         for side in (-1.0, 1.0)
-        for low, high in zip(edges[:-1], edges[1:], strict=True)
+        for low, high in pairwise(edges)
     ]
     return [band for band in bands if np.count_nonzero(band) >= FEWEST_ROWS]
 

@@ -13,6 +13,7 @@ from breakaway.base.arguments import check_arguments
 from breakaway.base.one_line import OneLine, counted
 from breakaway.base.text import shown
 from breakaway.errors import LogError
+from breakaway.measure.identification.faults.spikes import spikes
 from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.sliding import (
     FAST,
@@ -24,7 +25,6 @@ from breakaway.measure.identification.sliding import (
     reversals,
     sliding_levels,
 )
-from breakaway.measure.identification.spikes import Spike, spike_places, without_spikes
 from breakaway.measure.identification.stretches import (
     RESOLVED,
     Places,
@@ -61,6 +61,14 @@ FILTER_RISE = 0.35
 
 SATURATED_SAMPLES = 4
 """A peak of as many equal samples is cut off."""
+
+
+@dataclass(frozen=True)
+class Spike:
+    """A single sample of the force that stands alone."""
+
+    time_s: float
+    force_n: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -240,8 +248,8 @@ def find_breakaway_events(
     Notes
     -----
     Not checked: inertia, so the acceleration times the part's mass must be small against
-    friction, or be taken off before; friction that differs between the directions, which looks like an
-    offset; a delay between force and position; moves too small or too slow for the noise of
+    friction, or be taken off before; friction that differs between the directions, which looks
+    like an offset; a delay between force and position; moves too small or too slow for the noise of
     the position; a log that begins within the standstill of a turn, which looks like a rest.
     The largest of many noisy samples exceeds the mean by about their noise.
 
@@ -270,13 +278,10 @@ def find_breakaway_events(
         "offset_n": offset_n,
     }
     _check_settings(settings)
-    places = spike_places(log.force_n)
-    quiet = Log(
-        force_n=without_spikes(log.force_n, places),
-        channels=log.channels,
-        source=log.source,
-        sha256=log.sha256,
-    )
+    places = spikes(log, "force_n")
+    held = log.force_n.copy()
+    held[places] = held[places - 1]
+    quiet = Log(force_n=held, channels=log.channels, source=log.source, sha256=log.sha256)
     at_part = quiet if rig is None else rig.at_part(quiet)
     cut = find_stretches(
         at_part,

@@ -37,7 +37,7 @@ from breakaway.measure.identification.record import (
 )
 from breakaway.measure.identification.result import Identification, Internals
 from breakaway.measure.identification.rig_file import RigFile
-from breakaway.measure.identification.rig_intervals import with_rig
+from breakaway.measure.identification.rig_intervals import IN_SERIES, stiffness_is_told, with_rig
 from breakaway.measure.identification.settings import (
     at_least_one,
     check_run,
@@ -418,6 +418,9 @@ class _Found:
                 f"this law explains the log poorly, with an error of {percent:.0f} %: the "
                 "parameters mean little; try another law, motion or mapping"
             )
+        free = [one.name for one in self.asked.problem.layout.free]
+        if "stiffness_n_per_m" in free and not stiffness_is_told(self.settings.rig):
+            out.append(f"stiffness_n_per_m is {IN_SERIES}")
         places = [
             i for i, one in enumerate(self.asked.problem.layout.free) if "stribeck" in one.name
         ]

@@ -24,7 +24,7 @@ from breakaway.measure.identification.record import (
     Span,
     measured_rows,
 )
-from breakaway.measure.identification.rig_intervals import profile_with_rig
+from breakaway.measure.identification.rig_intervals import profile_with_rig, spread_by_rig
 from breakaway.measure.identification.settings import at_least_one, check_seed, known
 from breakaway.measure.identification.uncertainty import (
     Covariance,
@@ -224,7 +224,7 @@ class Identification(OneLine):
             seed,
             progress,
         )
-        return replace(found, samples=self._spread(found.samples, seed))
+        return replace(found, samples=spread_by_rig(found.samples, self.settings.rig, seed))
 
     def draws(self, samples: int, *, seed: int = 0) -> dict[str, Array]:
         """Draw parameters from the normal distribution that the covariance gives.
@@ -259,11 +259,7 @@ class Identification(OneLine):
         mirrored = {
             one.name: np.abs(drawn[one.name]) if one.may_vanish else drawn[one.name] for one in free
         }
-        return self._spread(mirrored, seed)
-
-    def _spread(self, drawn: dict[str, Array], seed: int) -> dict[str, Array]:
-        """Return draws that are also spread by what is uncertain of the rig."""
-        return drawn if self.settings.rig is None else self.settings.rig.spread(drawn, seed)
+        return spread_by_rig(mirrored, self.settings.rig, seed)
 
     def _place(self, name: str) -> int:
         names = [one.name for one in self.estimates]
@@ -290,6 +286,7 @@ def as_dict(found: Identification) -> dict[str, Any]:
         "asymmetric": found.law.asymmetric,
         "position_dependent": found.law.position_dependent,
         "motion": found.settings.motion,
+        "rig": None if found.settings.rig is None else found.settings.rig.model_dump(),
         "excitation": vars(found.excitation),
         "estimates": [vars(one) for one in found.estimates],
         "combined": [vars(one) for one in found.combined],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -18,7 +17,6 @@ from breakaway.measure.logs.derived import SPACING_TOLERANCE, derive_motion
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.files import parse_toml
 from breakaway.model.scenario.model import Model, NotNegative, Positive, Text
-from breakaway.model.units import unit_of
 
 
 class RigFile(Model):
@@ -55,7 +53,7 @@ class RigFile(Model):
     """Cutoff of the low-pass in front of the sampling of the force, in Hz."""
     force_calibration_percent: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
     """Standard uncertainty of the load cell's gain, in percent of the force."""
-    notes: Annotated[list[Text], Field(default_factory=list)]
+    notes: list[Text] = Field(default_factory=list)
     """Where the figures come from, and what they leave open."""
 
     @model_validator(mode="after")
@@ -94,77 +92,6 @@ class RigFile(Model):
             return moved
         return _changed(log, position, force - self.mass_kg * _acceleration(moved))
 
-    def widened(
-        self, name: str, value: float, low: float, high: float, quantile: float
-    ) -> tuple[float, float]:
-        """Return the interval of a parameter that also allows for what is uncertain of the rig.
-
-        Parameters
-        ----------
-        name : str
-            The parameter.
-        value, low, high : float
-            Its estimate and the interval that the log alone gives.
-        quantile : float
-            Half width of that interval, in standard errors.
-
-        """
-        if name == "stiffness_n_per_m" and low > 0.0:
-            error = quantile * self._compliance_error(value)
-            most = 1.0 / value + math.hypot(1.0 / low - 1.0 / value, error)
-            least = 1.0 / value - math.hypot(1.0 / value - 1.0 / high, error)
-            return 1.0 / most, 1.0 / least if least > 0.0 else math.inf
-        error = quantile * self._own_error(name, value)
-        ends = value - math.hypot(value - low, error), value + math.hypot(high - value, error)
-        return (max(ends[0], 0.0) if low >= 0.0 else ends[0]), ends[1]
-
-    def error(self, name: str, value: float, error: float) -> float:
-        """Return the standard error of a parameter that also allows for the rig."""
-        own = self._own_error(name, value)
-        if name == "stiffness_n_per_m":
-            own = value**2 * self._compliance_error(value)
-        return math.hypot(error, own)
-
-    def spread(self, drawn: dict[str, Array], seed: int) -> dict[str, Array]:
-        """Return draws of parameters that are also spread by what is uncertain of the rig.
-
-        Parameters
-        ----------
-        drawn : dict
-            Parameter -> its draws. One load cell measured all of a draw.
-        seed : int
-            The same seed gives the same draws.
-
-        """
-        rng = np.random.default_rng((seed, 1))
-        count = len(next(iter(drawn.values())))
-        gain = np.exp(0.01 * self.force_calibration_percent * rng.standard_normal(count))
-        softer = self._rig_compliance_error * rng.standard_normal(count)
-        heavier = self.mass_error_kg * rng.standard_normal(count)
-        out = {n: one * gain if scales_with_force(n) else one for n, one in drawn.items()}
-        if "stiffness_n_per_m" in out:
-            out["stiffness_n_per_m"] = 1.0 / np.abs(1.0 / out["stiffness_n_per_m"] - softer)
-        if "mass_kg" in out:
-            out["mass_kg"] = np.abs(out["mass_kg"] - heavier)
-        return out
-
-    @property
-    def _rig_compliance_error(self) -> float:
-        """Standard uncertainty of 1 / k_rig, in m/N."""
-        stiffness = self.stiffness_n_per_m
-        return 0.0 if stiffness is None else self.stiffness_error_n_per_m / stiffness**2
-
-    def _compliance_error(self, stiffness_n_per_m: float) -> float:
-        """Return what the rig adds to the uncertainty of 1 / k_e, in m/N."""
-        gain = 0.01 * self.force_calibration_percent / stiffness_n_per_m
-        return math.hypot(gain, self._rig_compliance_error)
-
-    def _own_error(self, name: str, value: float) -> float:
-        gain = 0.01 * self.force_calibration_percent * abs(value)
-        if not scales_with_force(name):
-            return 0.0
-        return math.hypot(gain, self.mass_error_kg) if name == "mass_kg" else gain
-
     def save(self, path: str | Path) -> None:
         """Write the file whole or not at all.
 
@@ -202,18 +129,6 @@ class RigFile(Model):
         check_arguments(RigFile.load, locals(), LogError)
         source = Path(path)
         return parse_toml(cls, text_of(source, ScenarioError), source.name)
-
-
-def scales_with_force(name: str) -> bool:
-    """Whether a parameter is as wrong as the gain of the load cell.
-
-    Examples
-    --------
-    >>> [scales_with_force(name) for name in ("damping_n_s_per_m", "mass_kg", "stiction_ratio")]
-    [True, True, False]
-
-    """
-    return unit_of(name).symbol.startswith(("N", "kg"))
 
 
 def _changed(log: Log, position: Array, force: Array) -> Log:

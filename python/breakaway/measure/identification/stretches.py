@@ -79,7 +79,7 @@ class Stretches:
         return max([rest.first, *(gap + 1 for gap in self.jumps(rest.first, rest.last))])
 
     def shows_rest(self, first: int, move: int) -> bool:
-        """Whether a rest from ``first`` until ``move`` was recorded for as long as a speed needs."""
+        """Whether a rest from ``first`` to ``move`` was recorded for as long as a speed needs."""
         known = np.isfinite(self.speed_m_per_s[first:move]).any()
         return bool(known and self.seen_s(first, move) >= self.window_s)
 

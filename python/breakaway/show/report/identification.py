@@ -384,6 +384,8 @@ def _settings(found: Identification, posterior: Posterior | None) -> Iterator[tu
     yield "motion", f"{run.motion.replace('_', ' ')}: simulated {MOTION_WORDS[run.motion]}"
     if run.controller is not None:
         yield "controller", _flat(run.controller.model_dump())
+    if run.rig is not None:
+        yield "rig", _flat(run.rig.model_dump(exclude={"notes"}, exclude_defaults=True))
     if run.force_limit_n is not None:
         yield "force limit", f"{run.force_limit_n:g} N"
     yield "spans that were fitted", ", ".join(f"{a:.6g} s to {b:.6g} s" for a, b in found.spans)

@@ -62,7 +62,11 @@ def test_both_pulls_make_one_rig() -> None:
     assert rig.mass_kg == pytest.approx(MASS_KG, rel=0.02)
     assert 0.0 < rig.stiffness_error_n_per_m < 0.01 * STIFFNESS_N_PER_M
     assert 0.0 < rig.mass_error_kg < 0.05 * MASS_KG
-    assert (rig.filter_hz, rig.force_calibration_percent, rig.position_sensor) == (None, 0.0, "drive")
+    assert (rig.filter_hz, rig.force_calibration_percent, rig.position_sensor) == (
+        None,
+        0.0,
+        "drive",
+    )
 
 
 def test_play_is_told_and_leaves_the_stiffness_alone() -> None:
