@@ -10,10 +10,9 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import NamedTuple
 
 from families import FAMILIES, log_of, rig_of
-from friction import LAWS
-from rig import Truth
 
 import breakaway as bk
+from friction import LAWS
 
 REFUSED = "(refused)"
 

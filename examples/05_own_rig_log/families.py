@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from friction import LAWS
 from rig import (
     DURATION_S,
     ROWS_PER_S,
@@ -23,6 +22,7 @@ from rig import (
 
 import breakaway as bk
 from breakaway.measure.identification.rig_file import RigFile
+from friction import LAWS
 
 
 def heavy(truth: Truth, case: int) -> Truth:

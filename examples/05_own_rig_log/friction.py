@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 PIECES_PER_DEFLECTION = 10
-"""Into how many pieces a step is cut in which the part moves by the deflection at which it slides."""
+"""Pieces of a step in which the part moves by the deflection at which it slides."""
 
 SATURATED = 4.0
 """A step that moves the part by so many deflections ends in sliding, however it began."""
@@ -74,7 +74,7 @@ class Lugre:
 
 @dataclass
 class ElastoPlastic(Lugre):
-    """Elasto-plastic friction (Dupont et al., IEEE TAC 47(5), 2002): LuGre with an elastic range."""
+    """Elasto-plastic (Dupont et al., IEEE TAC 47(5), 2002): LuGre with an elastic range."""
 
     elastic_share: float = 0.6
 

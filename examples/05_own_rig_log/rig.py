@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from friction import LAWS, Levels
 from numpy.typing import NDArray
 
 import breakaway as bk
+from friction import LAWS, Levels
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Logs that tell little: one way, stick-slip, and below breakaway; what each may say, and no more."""
+"""Logs that tell little: one way, stick-slip, below breakaway; what each may say, and no more."""
 
 import math
 from collections.abc import Callable

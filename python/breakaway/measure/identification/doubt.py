@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from breakaway.measure.identification.faults.rig import rig_parameters
@@ -23,6 +24,9 @@ from breakaway.measure.identification.turns import Turns, find_turns, passages
 from breakaway.measure.identification.uncertainty import Covariance, covariance
 from breakaway.measure.identification.verdicts import NO_PEAK, Estimate
 from breakaway.measure.logs.log import Array
+
+Chosen = NDArray[np.bool_]
+"""Which rows are meant."""
 
 RIVALS: dict[LawName, LawName] = {"lugre": "elasto_plastic", "elasto_plastic": "lugre"}
 """The other law with a bristle."""
@@ -174,14 +178,17 @@ def _preferred(
     problem, starts, bounds = _rival(asked, rival, settings, best)
     every = max(1, len(problem.measured) // THINNED_ROWS)
     ends = [minimize(problem.thinned(every), one, bounds, loss, EVALUATIONS) for one in starts]
-    other = problem.residual(min(ends, key=lambda one: one.cost).internal)
-    own = asked.problem.residual(best)
-    rows = weight * len(own)
-    gain = rows * float(np.log(max(other @ other, 1e-300) / max(own @ own, 1e-300)))
+    other = _power(problem, min(ends, key=lambda one: one.cost).internal)
+    gain = weight * len(problem.measured) * float(np.log(other / _power(asked.problem, best)))
     if gain > PREFERRED:
         return ""
     how = "better" if gain < -PREFERRED else "as well"
     return f"law {rival.name!r} explains the log {how}"
+
+
+def _power(problem: Problem, internal: Array) -> float:
+    residual = problem.residual(internal)
+    return max(float(residual @ residual), 1e-300)
 
 
 def _rival(
@@ -230,7 +237,7 @@ def _comes_back(turns: Turns, residual: Array, deflection_m: float, least: float
 
 
 def _widened(
-    asked: Prepared, loss: Loss, best: Array, known: Covariance, sliding: Array
+    asked: Prepared, loss: Loss, best: Array, known: Covariance, sliding: Chosen
 ) -> Covariance:
     """Return the covariance that allows for how far the rows about turns pull the parameters."""
     free = asked.problem.layout.free

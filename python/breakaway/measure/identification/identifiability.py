@@ -97,7 +97,7 @@ def prepare(
     mass_shows = sizes.mass_shows or method == "least_squares"
     back = unexcited(candidates, shown, settings, mass_shows)
     resting = idle(names, (*free, *fixed))
-    neutral = {name: value for name, (value, _) in back.items()} | resting | dict(fixed)
+    neutral = {name: value for name, (value, _) in back.items()} | {**resting, **fixed}
     numbers = {**stand_in(law, settings, sizes), **neutral}
     layout = Layout.of(parameters, numbers, tuple(owners))
     channel = predicted_channel(settings.motion)

@@ -28,7 +28,7 @@ from breakaway.measure.identification.output_error import (
     minimize_all,
     screened_starts,
 )
-from breakaway.measure.identification.prediction import Prediction, predict_rows
+from breakaway.measure.identification.prediction import predict_rows
 from breakaway.measure.identification.record import (
     MOTIONS,
     MotionKind,
@@ -44,6 +44,7 @@ from breakaway.measure.identification.settings import (
     check_seed,
     known,
 )
+from breakaway.measure.identification.together import sums, without_offset
 from breakaway.measure.identification.uncertainty import (
     NOT_IDENTIFIABLE,
     NOT_TOLD_FROM_0,
@@ -52,7 +53,6 @@ from breakaway.measure.identification.uncertainty import (
     few_events,
     interval,
 )
-from breakaway.measure.identification.together import sums, without_offset
 from breakaway.measure.identification.verdicts import (
     Estimate,
     Verdict,
