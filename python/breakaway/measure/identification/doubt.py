@@ -125,8 +125,8 @@ def doubt(
 def events(asked: Prepared, settings: RunSettings, best: Array) -> dict[int, int]:
     """Return in how many events of an imposed motion a parameter shows, by its place.
 
-    What acts about turns shows in each turn, the Stribeck term in each passage below twice its
-    speed.
+    What acts about turns shows in each turn, the Stribeck term there too, and in each passage below
+    twice its speed.
     """
     if settings.motion != "imposed":
         return {}
@@ -137,7 +137,8 @@ def events(asked: Prepared, settings: RunSettings, best: Array) -> dict[int, int
     if "stribeck_velocity_m_per_s" in names:
         slow = 2.0 * asked.problem.layout.values(best)["stribeck_velocity_m_per_s"]
         peak = ("stribeck_velocity_m_per_s", "stiction_ratio")
-        out |= {names.index(name): passages(v, slow) for name in peak if name in names}
+        shown = max(passages(v, slow), turns)
+        out |= {names.index(name): shown for name in peak if name in names}
     return out
 
 

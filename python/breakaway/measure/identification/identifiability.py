@@ -92,7 +92,7 @@ def prepare(
     check_count(law.name, parameters, len(spans))
     places = np.concatenate([np.arange(first, end) for first, end in segments])
     sizes = scales(rows, places, fixed.get("mass_kg"))
-    shown = excitation(rows, places)
+    shown = excitation(rows, places, sizes.mass_kg if sizes.mass_shows else 0.0)
     candidates = [name for name in names if name not in fixed and name not in free]
     mass_shows = sizes.mass_shows or method == "least_squares"
     back = unexcited(candidates, shown, settings, mass_shows)

@@ -125,8 +125,11 @@ class Verdict:
     remedy: str = ""
 
 
-def excitation(rows: Rows, places: Places) -> Excitation:
-    """Measure what a log excites, in the rows at ``places``."""
+def excitation(rows: Rows, places: Places, mass_kg: float = 0.0) -> Excitation:
+    """Measure what a log excites, in the rows at ``places``.
+
+    Whether the joint slides is judged by the force without the inertia of ``mass_kg``.
+    """
     x, v, force = *rows.columns[:2, places], rows.driving_force_n[places]
     noise = noise_floor(rows.log, "position_m")
     noise_m = max(noise.white, noise.quantization)
@@ -137,7 +140,8 @@ def excitation(rows: Rows, places: Places) -> Excitation:
     slow, fast = (float(q) for q in np.quantile(speed[moving], [0.05, 0.95]))
     force_noise = noise_floor(rows.log, "force_n")
     noise_n = max(force_noise.white, force_noise.quantization)
-    slides = broke_away(find_turns(x, v), force, noise_m, noise_n)
+    friction = force - mass_kg * rows.columns[2, places]
+    slides = broke_away(find_turns(x, v), friction, noise_m, noise_n)
     both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
     both = both and (slides is None or slides[0] == slides[1])
     direction = 0 if both else int(np.sign(np.median(sign)))
@@ -285,7 +289,7 @@ def unexcited(
                 hold(name, 0.0, speeds)
         if settings.motion == "imposed":
             hold("damping_n_s_per_m", 0.0, speeds)
-    if not shown.broke_away:
+    if not shown.broke_away and settings.motion == "imposed":
         hold("stiction_ratio", 1.0, "the part never broke away")
         hold("stribeck_velocity_m_per_s", 1.0, "the part never broke away")
         for name in names:
@@ -328,6 +332,9 @@ def untold(
             "motion follow from each other; inertia and friction look alike"
         )
         out |= dict.fromkeys(names, slips)
+    if "backlash_m" in names:
+        free_travel = "each turn begins with free travel, which hides how the bristle is loaded"
+        out |= dict.fromkeys(("stiffness_n_per_m", "damping_n_s_per_m"), free_travel)
     return {name: because for name, because in out.items() if name in names}
 
 
