@@ -11,6 +11,7 @@ STUDY = Path(__file__).parents[2] / "examples/05_own_rig_log"
 sys.path.insert(0, str(STUDY))
 
 from families import FAMILIES, log_of  # noqa: E402
+
 from friction import LAWS, Levels  # noqa: E402
 
 JOINT = Levels(
