@@ -152,6 +152,8 @@ def world(tmp_path_factory):
     tuning = small_tuning(population)
     joint = bk.JointFile.from_identification(found)
     joint.save(folder / "joint.toml")
+    rig = bk.RigFile(stiffness_n_per_m=1e6)
+    rig.save(folder / "rig.toml")
     rows = "".join(f"{k / 100},{k / 1000},2.5\n" for k in range(20))
     (folder / "log.csv").write_text("t_s,position_m,force_n\n" + rows)
     comparison = bk.compare_methods(population, [method], laws="lugre", runs=2, baselines=[])
@@ -164,6 +166,7 @@ def world(tmp_path_factory):
         starts=[breakaway_log(force_n) for force_n in (80.0, 100.0, 130.0)],
         found=found,
         joint=joint,
+        rig=rig,
         fit=bk.identify_inertia_friction(log),
         parts=bk.fit_population(breakaway_log(force_n) for force_n in (80.0, 100.0, 130.0)),
         run=bk.simulate(scenario),
@@ -252,6 +255,9 @@ def calls(w):
         "Normal.scaled": (bk.Normal(mean=1.0, std=0.1).scaled, {"factor": 1.0}),
         "PidGains": (bk.design.PidGains, {"kp": 1.0, "ki": 1.0, "kd": 1.0}),
         "Population.correlated": (w.parts.correlated, {"count": 2}),
+        "RigFile.at_part": (w.rig.at_part, {"log": w.log}),
+        "RigFile.load": (bk.RigFile.load, {"path": w.folder / "rig.toml"}),
+        "RigFile.save": (w.rig.save, {"path": w.folder / "rig.toml"}),
         "SampledPid": (bk.design.SampledPid, {"gains": w.pid.gains, "period_s": 1e-5}),
         "Samples.quantile": (bk.Samples(values=(1.0, 2.0)).quantile, {"u": t_s}),
         "Samples.scaled": (bk.Samples(values=(1.0, 2.0)).scaled, {"factor": 1.0}),
@@ -338,6 +344,10 @@ def calls(w):
         "preset_names": (bk.preset_names, {}),
         "read_log": (bk.read_log, {"path": w.folder / "log.csv"}),
         "resolve": (bk.resolve, {"scenario": w.scenario}),
+        "rig_from_blank": (
+            bk.rig_from_blank,
+            {"logs": [bk.Log(t_s=t_s, position_m=1e-6 * t_s, force_n=t_s)]},
+        ),
         "run_study": (bk.run_study, {"study": w.study, "out": w.folder / "again"}),
         "run_trial": (
             bk.run_trial,

@@ -40,6 +40,7 @@ from breakaway.export import ExportedC as ExportedC
 from breakaway.export import ExportedFmu as ExportedFmu
 from breakaway.export import export_c as export_c
 from breakaway.export import export_fmu as export_fmu
+from breakaway.measure.identification import Blank as Blank
 from breakaway.measure.identification import BreakawayEvent as BreakawayEvent
 from breakaway.measure.identification import BreakawayReport as BreakawayReport
 from breakaway.measure.identification import Cascade as Cascade
@@ -51,12 +52,14 @@ from breakaway.measure.identification import JointFile as JointFile
 from breakaway.measure.identification import Population as Population
 from breakaway.measure.identification import Posterior as Posterior
 from breakaway.measure.identification import Prediction as Prediction
+from breakaway.measure.identification import RigFile as RigFile
 from breakaway.measure.identification import compare_laws as compare_laws
 from breakaway.measure.identification import find_breakaway_events as find_breakaway_events
 from breakaway.measure.identification import fit_population as fit_population
 from breakaway.measure.identification import identifiability as identifiability
 from breakaway.measure.identification import identify as identify
 from breakaway.measure.identification import identify_inertia_friction as identify_inertia_friction
+from breakaway.measure.identification import rig_from_blank as rig_from_blank
 from breakaway.measure.logs import Channel as Channel
 from breakaway.measure.logs import Finding as Finding
 from breakaway.measure.logs import Log as Log

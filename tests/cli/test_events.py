@@ -47,6 +47,27 @@ def test_gives_the_same_as_json(call: Callable[..., Any], logs: list[str]) -> No
     assert found[1]["events"][0]["breakaway_force_n"] == pytest.approx(21.0, rel=0.02)
 
 
+def test_names_samples_that_stand_alone(call: Callable[..., Any], logs: list[str]) -> None:
+    lines = Path(logs[0]).read_text().splitlines()
+    lines[700] = ",".join([*lines[700].split(",")[:2], "9999"])
+    Path(logs[0]).write_text("\n".join(lines))
+    done = call("events", logs[0])
+    row = next(line for line in done.stdout.splitlines() if "part_0.csv" in line)
+    assert float(row.split()[3]) == pytest.approx(20.0, rel=0.02)
+    assert (
+        "- part_0.csv: 1 single sample of the force stands alone, the first of 9.999 kN at 0.699 s;"
+    ) in done.stdout
+
+
+def test_takes_a_rig(call: Callable[..., Any], logs: list[str], tmp_path: Path) -> None:
+    rig = tmp_path / "rig.toml"
+    rig.write_text("force_calibration_percent = 5.0\n")
+    shown = call("events", logs[0], "--rig", str(rig), "--json")
+    (report,) = json.loads(shown.stdout)["logs"]
+    assert report["rig"]["force_calibration_percent"] == 5.0
+    assert report["events"][0]["breakaway_error_n"] == pytest.approx(1.0, rel=0.02)
+
+
 def test_refuses_a_bad_option(call: Callable[..., Any], logs: list[str]) -> None:
     done = call("events", logs[0], "--use", "friction_n")
     assert done.exit_code == 2

@@ -27,7 +27,10 @@ COMMANDS = {
         *("identify", "motor.csv", "--law", "coulomb", "--motion", "closed_loop"),
         *("--controller", "FILE"),
     ),
+    "identify --rig": ("identify", "motor.csv", "--law", "coulomb", "--rig", "FILE"),
     "events": ("events", "FILE"),
+    "events --rig": ("events", "motor.csv", "--rig", "FILE"),
+    "rig-from-blank": ("rig-from-blank", "FILE", "--out", "out"),
 }
 
 

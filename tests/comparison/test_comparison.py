@@ -123,6 +123,36 @@ def test_sentences_say_what_was_found(done):
     ]
 
 
+def test_too_few_parts_are_said_to_be_too_few(done):
+    """Six comparisons need p < 0.0083, which no fewer than 8 parts can give."""
+    rows = [{**row, "runs": 7} for row in done.table]
+    said = sentences_of(done.asked, done.trials, rows)
+    assert said[0] == (
+        "too few parts to tell the methods apart: a difference with p < 0.0083 needs 8 parts that "
+        "only one of two methods frees, and 7 were tried; raise --runs"
+    )
+    assert not any("clearly" in sentence for sentence in said if "CAUTION" not in sentence)
+    enough = [{**row, "runs": 8} for row in done.table]
+    assert not any("too few" in one for one in sentences_of(done.asked, done.trials, enough))
+
+
+def test_no_limit_that_all_parts_keep_is_a_cause(done):
+    """One law keeps every limit, the other frees half of the parts and keeps every limit."""
+    kept = dict.fromkeys(("force_share", "jump_share", "velocity_share", "gentle_share"), 1.0)
+    half = dict.fromkeys(kept, 0.5)
+    rows = [
+        row | (kept | {"released_share": 1.0} if row["law"] == "lugre" else half)
+        | ({} if row["law"] == "lugre" else {"released_share": 0.5})
+        for row in done.table
+    ]  # fmt: skip
+    said = sentences_of(done.asked, done.trials, rows)
+    assert (
+        "follow frees 50 to 100 % gently; it fails most often because of parts that stay in place "
+        "under elasto_plastic, which are all but 50 % of the parts"
+    ) in said
+    assert not any("within its limit for 100 %" in sentence for sentence in said)
+
+
 def test_a_conclusion_of_one_law_is_flagged(done):
     """Under one law of the two, both ways are made to do the same."""
     trials = {case: dict(by_method) for case, by_method in done.trials.items()}

@@ -13,12 +13,14 @@ from hypothesis.extra.numpy import arrays
 
 from breakaway.errors import LogError
 from breakaway.measure.identification.events import BreakawayEvent, find_breakaway_events
+from breakaway.measure.identification.identifiability import identifiability
 from breakaway.measure.identification.stretches import find_stretches, noise
 from breakaway.measure.logs.log import Log
 
 Array = npt.NDArray[np.float64]
 
 SEALS = Path(__file__).parents[2] / "../shared/data/seals"
+CASES = Path(__file__).parents[2] / "../shared/cases"
 
 STARTS_MOVING = ("O-ring_5bar.csv",)
 
@@ -210,6 +212,79 @@ def test_a_log_that_begins_amid_the_loading_is_a_lower_bound() -> None:
     assert (event.presliding_displacement_m, event.load_start_s) == (None, None)
 
 
+def creep(t: Array, since_s: float) -> Array:
+    """A position at rest that slides at 9 mm/s from a time on."""
+    return 9e-3 * np.maximum(t - since_s, 0.0)
+
+
+def test_a_load_that_rises_into_a_gap_is_a_lower_bound() -> None:
+    t = np.arange(0.0, 6.0, 0.01)
+    rises = t < 0.595
+    force = np.where(rises, 207.0 * np.maximum(t - 0.5, 0.0), 19.2)
+    lost = (t > 0.595) & (t < 0.865)
+    log = Log(t_s=t, position_m=creep(t, 0.57), force_n=force)
+    event = only(without(log, lost))
+    assert event.breakaway_over_sliding == pytest.approx(0.97, abs=0.003)
+    assert event.loading_rate_n_per_s == pytest.approx(207.0)
+    assert (event.is_lower_bound, event.fallen_share) == (True, None)
+    assert event.reason == "a gap of 0.28 s follows the recorded peak at once"
+
+
+def test_the_first_sample_after_a_gap_is_a_lower_bound() -> None:
+    log = rig()
+    event = only(without(log, (log.t_s > 1.2) & (log.t_s < 1.398)))
+    assert event.is_lower_bound
+    assert event.breakaway_force_n == pytest.approx(90.0, rel=0.01)
+    assert event.reason.startswith("a gap of 0.2 s lies between the start of loading and")
+
+
+def test_a_single_sample_before_a_gap_is_no_rest() -> None:
+    t = np.concatenate([[0.0], np.arange(0.27, 5.0, 0.01)])
+    speed = np.where(t < 0.29, 1.5e-3, 20e-3)
+    speed[0] = 0.5e-3 / 0.27
+    position = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(t))])
+    report = find_breakaway_events(Log(t_s=t, position_m=position, force_n=np.full(len(t), 5.0)))
+    assert report.events == ()
+    (reason,) = report.refused
+    assert reason == "shows no rest of 0.04 s before it first moves; its breakaway was not recorded"
+
+
+def test_a_load_that_rises_between_two_samples_is_a_lower_bound() -> None:
+    fine = np.arange(0.0, 10.0, 0.001)
+    force = np.where(fine < 2.0, 0.0, 40.0 + 1e-3 * fine)
+    force[np.abs(fine - 2.0) < 1.5e-3] = 300.0
+    position = 0.01 * np.maximum(fine - 2.0, 0.0)
+    log = Log(t_s=fine[25::50], position_m=position[25::50], force_n=force[25::50])
+    event = only(log)
+    assert event.is_lower_bound
+    assert event.breakaway_force_n == pytest.approx(40.0, rel=0.01)
+    assert event.reason.startswith("the load rises by 40 N with 0 samples on the way")
+
+
+@pytest.mark.parametrize("spike_s", [0.2, 1.1, 2.5])
+@pytest.mark.parametrize("value_n", [9999.0, -9999.0])
+def test_a_single_sample_that_stands_alone_is_no_breakaway(spike_s: float, value_n: float) -> None:
+    log = rig(seed=3)
+    force = log.force_n.copy()
+    force[np.searchsorted(log.t_s, spike_s - 1e-6)] = value_n
+    event, clean = only(replaced(log, force)), only(log)
+    assert event.breakaway_force_n == pytest.approx(clean.breakaway_force_n, abs=0.01)
+    assert event.sliding_force_n == pytest.approx(clean.sliding_force_n, abs=0.01)
+    assert not event.is_lower_bound
+    assert find_breakaway_events(log).spikes == ()
+    (spike,) = find_breakaway_events(replaced(log, force)).spikes
+    assert (spike.time_s, spike.force_n) == (pytest.approx(spike_s), value_n)
+
+
+def test_a_single_sample_beside_the_peak_may_be_it() -> None:
+    log = rig(seed=3)
+    force = log.force_n.copy()
+    force[np.searchsorted(log.t_s, 1.4) + 1] = 500.0
+    event = only(replaced(log, force))
+    assert event.breakaway_force_n == pytest.approx(HOLD_N, rel=0.01)
+    assert event.is_lower_bound and "stands alone beside the peak" in event.reason
+
+
 def test_a_force_that_is_cut_off_is_a_lower_bound() -> None:
     log = rig(seed=2)
     event = only(replaced(log, np.minimum(log.force_n, 80.0)))
@@ -378,6 +453,52 @@ def test_a_small_move_is_presliding() -> None:
 
 def test_noise_of_a_coarse_channel_is_that_of_its_rounding() -> None:
     assert noise(np.repeat(np.arange(50.0), 40)) == pytest.approx(1.0 / np.sqrt(12.0))
+
+
+@pytest.mark.parametrize(("log", "count"), [(rig(), 1), (rig(back=True), 1), (None, 0)])
+def test_rests_that_end_in_motion_are_those_that_events_start_from(
+    log: Log | None, count: int
+) -> None:
+    moving = without(rig(), rig().t_s < 2.0)
+    found = find_breakaway_events(log or moving)
+    assert len(found.events) == count
+    assert identifiability(log or moving, law="coulomb").excitation.rests == count
+
+
+# A pull with three samples of 9.999 kN, as a test machine exports it
+
+
+@pytest.mark.parametrize(
+    ("name", "held_n", "slides_n", "spikes_s"),
+    [
+        ("teil_1.csv", 3365.0, 1753.0, [0.67, 1.271, 1.36]),
+        ("teil_2.csv", 3318.0, 2223.0, [0.4615, 1.1095, 1.466]),
+    ],
+)
+def test_spikes_of_a_test_machine_are_no_breakaway(
+    name: str, held_n: float, slides_n: float, spikes_s: list[float]
+) -> None:
+    path = CASES / name
+    if not path.exists():
+        pytest.skip("the simulated pulls (../shared/cases) are absent")
+    report = find_breakaway_events(pull_log(path))
+    assert [spike.time_s for spike in report.spikes] == spikes_s
+    assert {spike.force_n for spike in report.spikes} == {9999.0}
+    (event,) = report.events
+    assert event.breakaway_force_n == pytest.approx(held_n, abs=10.0)
+    assert event.sliding_force_n == pytest.approx(slides_n, abs=10.0)
+    assert not event.is_lower_bound
+
+
+def pull_log(path: Path) -> Log:
+    """Read mm and kN with decimal commas; cells that hold no number, and repeated rows, go."""
+    rows = [
+        [float(cell.replace(",", ".")) for cell in line.split(";")]
+        for line in path.read_text(encoding="latin-1").splitlines()[7:]
+        if "OVL" not in line and not line.endswith(";")
+    ]
+    columns = np.array(rows)[np.diff([-1.0, *(row[0] for row in rows)]) > 0.0].T
+    return Log(t_s=columns[0], position_m=1e-3 * columns[1], force_n=1e3 * columns[2])
 
 
 # Measured seals

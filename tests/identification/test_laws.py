@@ -59,13 +59,13 @@ def test_numbers_go_to_their_places() -> None:
     layout = Layout.of(parameters, {"mass_kg": 2.0, "stiffness_n_per_m": 1e6}, (0, 1, 1))
     values = {"coulomb_n": 5.0, "viscous_n_s_per_m": 7.0, "offset_1_n": -1.0, "offset_2_n": 3.0}
     at = np.array([one.internal(values[one.name]) for one in layout.free])
-    numbers = dict(zip(RIG_NUMBERS[:-1], layout.numbers(at)[:12], strict=True))
+    numbers = dict(zip(RIG_NUMBERS[:-1], layout.numbers(at)[:15], strict=True))
     assert layout.values(at) == pytest.approx(values)
     assert numbers["mass_kg"] == 2.0
     assert numbers["coulomb_positive_n"] == numbers["coulomb_negative_n"] == pytest.approx(5.0)
     assert numbers["viscous_negative_n_s_per_m"] == pytest.approx(7.0)
     assert (numbers["stiction_ratio"], numbers["stiffness_n_per_m"]) == (1.0, 1e6)
-    assert layout.numbers(at)[12:].tolist() == [-1.0, 3.0, 3.0]
+    assert layout.numbers(at)[15:].tolist() == [-1.0, 3.0, 3.0]
     many = layout.numbers(np.stack([at, at + 0.1]))
     np.testing.assert_array_equal(many[0], layout.numbers(at))
 

@@ -1,6 +1,7 @@
 """A log is told what it cannot tell, and which experiment would."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from breakaway.errors import LogError
 from breakaway.measure.identification import Identification, Verdict, identifiability, identify
+from breakaway.measure.identification.curve import curve_misfit, peak_in_words
 from breakaway.measure.identification.verdicts import stiction_peak
 from breakaway.measure.logs import Log
 
@@ -75,7 +77,7 @@ def test_one_direction_does_not_tell_an_offset() -> None:
     told = of(found)["offset_n"]
     assert not told.identifiable and "offset_n" not in found.values
     assert "slides only one way, so an offset looks like friction" in told.because
-    assert told.remedy == "let the part slide both ways"
+    assert told.remedy.startswith("let the part slide both ways, or fix the offset")
     assert found["viscous_n_s_per_m"].value == pytest.approx(40.0, rel=0.05)
 
 
@@ -96,6 +98,24 @@ def test_a_rich_log_tells_all(rich_fit: Identification) -> None:
     assert [one.parameter for one in held] == ["mass_kg"]
     assert "inertia is too small against friction to show" in held[0].because
     assert peak(rich_fit).startswith("stiction peak: seen; F_s / F_c = 1.")
+
+
+def test_the_curve_of_a_law_that_holds_runs_through_the_dots(rich_fit: Identification) -> None:
+    misfit = curve_misfit(rich_fit)
+    assert misfit is not None and misfit.share < 0.1
+    assert peak_in_words(rich_fit) == peak(rich_fit)
+
+
+def test_a_curve_that_leaves_the_dots_makes_a_peak_doubtful(
+    rig: Any, lugre: dict[str, float], rich_fit: Identification
+) -> None:
+    truth = {**lugre, "coulomb_n": 14.0}
+    other = rig(**truth).moved(1500, 1000.0, force_noise_n=0.1)
+    shown = replace(rich_fit, log=other)
+    misfit = curve_misfit(shown)
+    assert misfit is not None and misfit.share == pytest.approx(20.0 / 14.0 - 1.0, abs=0.1)
+    assert "peak: doubtful; F_s / F_c = 1." in peak_in_words(shown)
+    assert f"by {100 * misfit.share:.0f} % at" in peak_in_words(shown)
 
 
 def test_no_peak_is_said_where_there_is_none(rig: Any, lugre: dict[str, float]) -> None:

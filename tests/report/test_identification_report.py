@@ -152,6 +152,29 @@ def test_the_stiction_peak_is_told(found, page, simple_page):
     assert "Stiction peak: not identified" in simple_page
 
 
+def test_a_peak_whose_curve_leaves_the_dots_is_doubtful(found):
+    """The same fit, shown with a log whose friction is 40 % of what was fitted."""
+    log = found.log
+    weaker = Log(t_s=log.t_s, position_m=log.position_m, force_n=0.4 * log.force_n)
+    page = identification_report(replace(found, log=weaker))
+    said = re.search(r"Stiction peak: doubtful; [^<]*", page)
+    assert said is not None and "steady curve leaves the measured friction by" in said[0]
+    share = float(re.search(r"by (\d+) % at", said[0])[1])
+    assert share > 100.0 * (1.0 / 0.4 - 1.0) - 30.0
+
+
+def test_a_prefix_is_that_of_the_largest_of_value_error_and_ends(found):
+    viscous = replace(
+        found["viscous_n_s_per_m"],
+        value=1e-9, standard_error=1600.0, low=0.0, high=3200.0, identifiable=False,
+        remark="not distinct from 0",
+    )  # fmt: skip
+    estimates = [viscous if one.name == viscous.name else one for one in found.estimates]
+    page = identification_report(replace(found, estimates=tuple(estimates)))
+    row = next(row for row in Page(page).rows if row.strip().startswith("viscous"))
+    assert "0.0 ± 1.6" in row and "0 to 3.2" in row and "kN s/m" in row
+
+
 def test_provenance_is_complete(found, page):
     assert page.count(SHA) == 2
     for said in (

@@ -8,7 +8,9 @@ use breakaway_core::control::{AntiWindup, Cascade, DerivativeOf, Gains, Pid, Vel
 use breakaway_core::rig::{Drive, LimitedPid, RIG_NUMBERS, Rig, Row};
 
 /// All numbers of a rig but the offset.
-const SHARED: [f64; 12] = [5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6];
+const SHARED: [f64; 15] = [
+    5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6, 2.0, -0.2, 3e-5,
+];
 
 const DRIVES: [Drive<f64>; 4] = [
     Drive::Imposed,
@@ -51,6 +53,8 @@ fn record(drive: Drive<f64>, elasto_plastic: bool, segments: usize) -> Record {
             period_s: period,
             mean_velocity_m_per_s: (x(t + period) - x(t)) / period,
             held_force_n: -2.0 + 60.0 * s.powi(3),
+            outside_force_n: 3.0 * c,
+            time_s: t - 0.3,
         }
     };
     // Three rows between segments belong to none.
@@ -83,7 +87,7 @@ fn models(record: &Record, count: usize) -> Vec<f64> {
 fn plainly(record: &Record, numbers: &[f64]) -> Simulated {
     let mut out = Simulated::default();
     for (segment, offset) in record.segments.iter().zip(&numbers[SHARED.len()..]) {
-        let rig: [f64; 13] = std::array::from_fn(|i| if i < 12 { numbers[i] } else { *offset });
+        let rig: [f64; 16] = std::array::from_fn(|i| if i < 15 { numbers[i] } else { *offset });
         let rig = Rig::from_numbers(&rig, record.elasto_plastic);
         let rows = &record.rows[segment.clone()];
         let mut state = rig.start(&record.drive, &rows[0]);

@@ -12,8 +12,11 @@ use crate::variation::Variation;
 /// A part on a rig.
 ///
 /// ```text
-/// m dv/dt = F − R(x, v, z) − F_0 − k_r x
+/// m dv/dt = F + F_out − R(x, v, z) − F_0 − d t − k_r x
 /// ```
+///
+/// The friction's levels are multiplied by 1 + w t; t counts from the start of the log. A free travel b
+/// lies between what moves and the friction: the bristle lets go, then nothing resists over b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rig<R> {
     /// m in kg.
@@ -22,12 +25,18 @@ pub struct Rig<R> {
     pub spring_n_per_m: R,
     /// F_0 in N: a constant force of the rig, such as a weight or the zero of a load cell.
     pub offset_n: R,
+    /// d in N/s: how fast that force changes.
+    pub drift_n_per_s: R,
+    /// w in 1/s: how fast the friction's levels change, as a share of themselves.
+    pub warming_per_s: R,
+    /// b in m: free travel when the force changes its direction.
+    pub backlash_m: R,
     /// R, the friction.
     pub friction: DirectionalLugre<R>,
 }
 
 /// The names of the numbers of a rig, in the order of [`Rig::from_numbers`].
-pub const RIG_NUMBERS: [&str; 13] = [
+pub const RIG_NUMBERS: [&str; 16] = [
     "mass_kg",
     "spring_n_per_m",
     "coulomb_positive_n",
@@ -40,6 +49,9 @@ pub const RIG_NUMBERS: [&str; 13] = [
     "damping_n_s_per_m",
     "coulomb_slope_n_per_m",
     "elastic_share",
+    "drift_n_per_s",
+    "warming_per_s",
+    "backlash_m",
     "offset_n",
 ];
 
@@ -89,6 +101,10 @@ pub struct Row<R> {
     pub mean_velocity_m_per_s: R,
     /// F between this row and the next, N.
     pub held_force_n: R,
+    /// F_out in N: a known force beside the drive's, up to the next row.
+    pub outside_force_n: R,
+    /// t from the start of the log, s.
+    pub time_s: R,
 }
 
 impl Row<f64> {
@@ -105,6 +121,8 @@ impl Row<f64> {
             period_s: R::constant(self.period_s),
             mean_velocity_m_per_s: R::constant(self.mean_velocity_m_per_s),
             held_force_n: R::constant(self.held_force_n),
+            outside_force_n: R::constant(self.outside_force_n),
+            time_s: R::constant(self.time_s),
         }
     }
 }
@@ -141,6 +159,8 @@ pub struct Predicted<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigState<R> {
     plant: PlantState<R>,
+    /// Where in the free travel the part is, m: 0 in its middle.
+    free_m: R,
     cascade: CascadeState<R>,
     pid: PidState<R>,
 }
@@ -148,7 +168,7 @@ pub struct RigState<R> {
 impl<R: Real> Rig<R> {
     /// A rig from its numbers, in the order of [`RIG_NUMBERS`]; LuGre unless `elasto_plastic`.
     #[inline(always)]
-    pub fn from_numbers(numbers: &[R; 13], elasto_plastic: bool) -> Self {
+    pub fn from_numbers(numbers: &[R; RIG_NUMBERS.len()], elasto_plastic: bool) -> Self {
         Self {
             mass_kg: numbers[0],
             spring_n_per_m: numbers[1],
@@ -168,7 +188,10 @@ impl<R: Real> Rig<R> {
                     Maybe::none()
                 },
             },
-            offset_n: numbers[12],
+            drift_n_per_s: numbers[12],
+            warming_per_s: numbers[13],
+            backlash_m: numbers[14],
+            offset_n: numbers[15],
         }
     }
 
@@ -178,8 +201,11 @@ impl<R: Real> Rig<R> {
     pub fn start(&self, drive: &Drive<R>, row: &Row<R>) -> RigState<R> {
         let (x, v) = (row.position_m, row.velocity_m_per_s);
         let inertial = self.mass_kg * row.acceleration_m_per_s2;
-        let friction_n = row.force_n - inertial - self.rig_force(x);
-        let bristle_m = self.friction.deflection_under(friction_n, x, v);
+        let friction_n = row.force_n - inertial - self.rig_force(x, row);
+        let warmth = self.warmth(row);
+        let bristle_m = warmth * self.friction.deflection_under(friction_n / warmth, x, v);
+        let half = R::constant(0.5) * self.backlash_m;
+        let free_m = R::select(friction_n.lt(R::zero()), -half, half);
         let plant = PlantState {
             position_m: x,
             velocity_m_per_s: v,
@@ -189,7 +215,7 @@ impl<R: Real> Rig<R> {
         };
         let previous_position_m = x - v * row.period_s;
         let pid = PidState { previous_position_m, ..PidState::at_rest() };
-        let mut state = RigState { plant, cascade: CascadeState::moving(x, v, row.period_s), pid };
+        let mut state = RigState { plant, free_m, cascade: CascadeState::moving(x, v, row.period_s), pid };
         if let Drive::Pid(limited) = drive {
             self.start_pid(limited, &mut state, row);
         }
@@ -209,9 +235,28 @@ impl<R: Real> Rig<R> {
         state.pid.integral_n = R::select(integrates, missing, R::zero());
     }
 
+    /// What the rig takes of the drive's force: F_0 + d t + k_r x − F_out.
     #[inline(always)]
-    fn rig_force(&self, x: R) -> R {
-        self.spring_n_per_m.mul_add(x, self.offset_n)
+    fn rig_force(&self, x: R, row: &Row<R>) -> R {
+        let offset_n = self.drift_n_per_s.mul_add(row.time_s, self.offset_n - row.outside_force_n);
+        self.spring_n_per_m.mul_add(x, offset_n)
+    }
+
+    /// The factor on the friction's levels.
+    #[inline(always)]
+    fn warmth(&self, row: &Row<R>) -> R {
+        self.warming_per_s.mul_add(row.time_s, R::one())
+    }
+
+    /// Lets the bristle's deflection, where it has just changed its sign, go through the free travel.
+    #[inline(always)]
+    fn take_free_travel(&self, state: &mut RigState<R>) {
+        let half = R::constant(0.5) * self.backlash_m;
+        let z = state.plant.bristle_m;
+        let forward = z.max(R::zero()).min(half - state.free_m);
+        let backward = (-z).max(R::zero()).min(half + state.free_m);
+        state.free_m = state.free_m + forward - backward;
+        state.plant.bristle_m = z - forward + backward;
     }
 
     /// What the model says of a row, and the state at the next one, `steps` steps later.
@@ -234,11 +279,11 @@ impl<R: Real> Rig<R> {
         };
         let predicted = Predicted { position_m: state.plant.position_m, force_n };
         let h = row.period_s * R::constant(1.0 / f64::from(steps));
-        let factors = Factors { joint_force: R::one(), friction_level: R::one() };
+        let factors = Factors { joint_force: R::one(), friction_level: self.warmth(row) };
         for _ in 0..steps {
             let half = R::constant(0.5) * h;
             let x_mid = half.mul_add(state.plant.velocity_m_per_s, state.plant.position_m);
-            let push = Push::rigid(force_n - self.rig_force(x_mid));
+            let push = Push::rigid(force_n - self.rig_force(x_mid, row));
             let plant = Plant {
                 joint: &self.friction,
                 mass_kg: self.mass_kg,
@@ -247,6 +292,7 @@ impl<R: Real> Rig<R> {
                 variation: &Variation::none(),
             };
             plant.step(Integrator::LinearlyImplicitMidpoint, &mut state.plant, R::zero(), h);
+            self.take_free_travel(state);
         }
         predicted
     }
@@ -273,10 +319,12 @@ impl<R: Real> Rig<R> {
         let z = state.plant.bristle_m;
         let joint =
             JointState { bristle_m: z, transverse_bristle_m: R::zero(), sliding: R::zero() };
-        let bristle = self.friction.freeze(&joint, x, v, R::one());
-        let friction_n = bristle.force(v, z, bristle.rate(v, z));
+        let bristle = self.friction.freeze(&joint, x, v, self.warmth(row));
+        let half = R::constant(0.5) * self.backlash_m;
+        let rate = R::select(state.free_m.abs().lt(half), R::zero(), bristle.rate(v, z));
+        let friction_n = bristle.force(v, z, rate);
         let force_n =
-            self.mass_kg.mul_add(row.acceleration_m_per_s2, friction_n + self.rig_force(x));
+            self.mass_kg.mul_add(row.acceleration_m_per_s2, friction_n + self.rig_force(x, row));
         state.plant.position_m = x;
         let share = R::constant(1.0 / f64::from(steps));
         let h = row.period_s * share;
@@ -284,7 +332,8 @@ impl<R: Real> Rig<R> {
         let change = R::constant(2.0) * (row.mean_velocity_m_per_s - v) * share;
         let mut speed = R::constant(0.5).mul_add(change, v);
         for _ in 0..steps {
-            self.carry_bristle(&mut state.plant, speed, h);
+            self.carry_bristle(&mut state.plant, speed, h, self.warmth(row));
+            self.take_free_travel(state);
             speed = speed + change;
         }
         Predicted { position_m: x, force_n }
@@ -301,12 +350,12 @@ impl<R: Real> Rig<R> {
     /// a row would ring with the midpoint rule. Below y = 1e-4 its series replaces the quotient. An
     /// elastic step that ends beyond the level, as α is taken before it, ends at the level.
     #[inline(always)]
-    fn carry_bristle(&self, state: &mut PlantState<R>, v: R, h: R) {
+    fn carry_bristle(&self, state: &mut PlantState<R>, v: R, h: R, warmth: R) {
         let z = state.bristle_m;
         let joint =
             JointState { bristle_m: z, transverse_bristle_m: R::zero(), sliding: R::zero() };
         let x_mid = (R::constant(0.5) * h).mul_add(v, state.position_m);
-        let b = self.friction.freeze(&joint, x_mid, v, R::one());
+        let b = self.friction.freeze(&joint, x_mid, v, warmth);
         let y = h * b.relaxation() / b.friction_level_n;
         let small = R::constant(1e-4);
         let kept = (-y).exp();

@@ -10,15 +10,16 @@ use breakaway_core::{Dual, Maybe, Real};
 use complex_step::Complex;
 
 /// In the order of [`RIG_NUMBERS`].
-const NUMBERS: [f64; 13] =
-    [5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6, 4.0];
+const NUMBERS: [f64; 16] = [
+    5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6, 0.0, 0.0, 0.0, 4.0,
+];
 
 /// A rig with some of its numbers changed; LuGre.
 fn rig(changes: &[(&str, f64)]) -> Rig<f64> {
     Rig::from_numbers(&numbers(changes), false)
 }
 
-fn numbers(changes: &[(&str, f64)]) -> [f64; 13] {
+fn numbers(changes: &[(&str, f64)]) -> [f64; 16] {
     let mut numbers = NUMBERS;
     for (name, value) in changes {
         let place = RIG_NUMBERS.iter().position(|known| known == name);
@@ -38,6 +39,8 @@ const STILL: Row<f64> = Row {
     period_s: 1e-3,
     mean_velocity_m_per_s: 0.0,
     held_force_n: 0.0,
+    outside_force_n: 0.0,
+    time_s: 0.0,
 };
 
 fn run<R: Real>(
@@ -300,6 +303,8 @@ fn log() -> Vec<Row<f64>> {
             period_s: period,
             mean_velocity_m_per_s: (x(t + period) - x(t)) / period,
             held_force_n: -2.0 + 60.0 * s.powi(3),
+            outside_force_n: 3.0 * c,
+            time_s: t - 0.3,
         }
     };
     (0..300).map(row).collect()
@@ -308,7 +313,7 @@ fn log() -> Vec<Row<f64>> {
 const DRIVES: [Drive<f64>; 4] =
     [Drive::Imposed, Drive::Force, Drive::Cascade(CASCADE), Drive::Pid(PID)];
 
-fn model<R: Real>(numbers: &[R; 13], drive: &Drive<f64>, elasto_plastic: bool) -> Vec<[R; 2]> {
+fn model<R: Real>(numbers: &[R; 16], drive: &Drive<f64>, elasto_plastic: bool) -> Vec<[R; 2]> {
     let rig = Rig::from_numbers(numbers, elasto_plastic);
     let predicted = run(&rig, drive, &log(), 3);
     predicted.iter().map(|p| [p.position_m, p.force_n]).collect()
@@ -345,7 +350,7 @@ fn assert_agree(name: &str, ours: &[[f64; 2]], theirs: &[[f64; 2]], bound: f64) 
 fn duals_complex_steps_and_differences_give_the_same_slopes() {
     for drive in DRIVES {
         for elasto_plastic in [false, true] {
-            let variables = std::array::from_fn(|i| Dual::<f64, 13>::variable(NUMBERS[i], i));
+            let variables = std::array::from_fn(|i| Dual::<f64, 16>::variable(NUMBERS[i], i));
             let dual = model(&variables, &drive, elasto_plastic);
             let plain = model(&NUMBERS, &drive, elasto_plastic);
             for (dual, plain) in dual.iter().zip(&plain) {
@@ -382,7 +387,7 @@ fn duals_complex_steps_and_differences_give_the_same_slopes() {
 fn every_number_that_counts_has_a_slope() {
     for drive in DRIVES {
         for elasto_plastic in [false, true] {
-            let variables = std::array::from_fn(|i| Dual::<f64, 13>::variable(NUMBERS[i], i));
+            let variables = std::array::from_fn(|i| Dual::<f64, 16>::variable(NUMBERS[i], i));
             let dual = model(&variables, &drive, elasto_plastic);
             for (i, name) in RIG_NUMBERS.into_iter().enumerate() {
                 let moves = |output: usize| dual.iter().any(|row| row[output].derivative[i] != 0.0);

@@ -21,7 +21,7 @@ impl RigRecord {
     #[new]
     fn new(
         py: Python<'_>,
-        columns: [PyBuffer<f64>; 9],
+        columns: [PyBuffer<f64>; 11],
         segments: Vec<(usize, usize)>,
         drive: &Bound<'_, PyAny>,
         elasto_plastic: bool,
@@ -51,6 +51,8 @@ impl RigRecord {
             period_s: values[6][i],
             mean_velocity_m_per_s: values[7][i],
             held_force_n: values[8][i],
+            outside_force_n: values[9][i],
+            time_s: values[10][i],
         };
         Ok(Self(Record {
             rows: (0..count).map(row).collect(),

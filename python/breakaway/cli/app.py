@@ -17,6 +17,7 @@ from breakaway.cli.help import add_command, unwrapped
 from breakaway.cli.identify import identify
 from breakaway.cli.presets import presets
 from breakaway.cli.reproduce import reproduce
+from breakaway.cli.rig_from_blank import rig_from_blank
 from breakaway.cli.run import run
 from breakaway.cli.show import say, say_aside
 from breakaway.cli.starting import init, schema
@@ -165,6 +166,13 @@ add_command(
     events,
     "breakaway events part_1.csv part_2.csv --population",
     "breakaway events seal.csv --use force_n=friction_n --json",
+)
+add_command(
+    app,
+    rig_from_blank,
+    "breakaway rig-from-blank held.csv --out rig.toml",
+    "breakaway rig-from-blank held.csv without_part.csv --out rig.toml",
+    "breakaway identify pull.csv --law lugre --rig rig.toml",
 )
 add_command(app, presets, "breakaway presets", "breakaway presets --json")
 add_command(

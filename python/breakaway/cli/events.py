@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from breakaway.cli.measured import measured
-from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Use
+from breakaway.base.one_line import counted
+from breakaway.cli.measured import measured, rig_of
+from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Rig, Use
 from breakaway.cli.quantity import show
 from breakaway.cli.sheet import Sheet
 from breakaway.cli.show import busy, say, say_json
@@ -33,6 +34,7 @@ def events(
     mapping: MappingFile = None,
     memory_gib: MemoryGib = None,
     resample_hz: ResampleHz = None,
+    rig: Rig = None,
     population: Annotated[
         bool,
         typer.Option(
@@ -45,29 +47,32 @@ def events(
     """Find breakaway in logs: force, presliding, loading rate, and which are lower bounds.
 
     A log in which the part already moves at the start is refused, with the
-    reason. The force is used as measured: inertia is not subtracted.
+    reason. The force is used as measured: of inertia, only that of a rig file is
+    subtracted.
     """
     from breakaway.measure.identification import find_breakaway_events, fit_population
 
-    reports, hints = [], []
+    reports, hints, stands = [], [], rig_of(rig)
     with busy("looking for breakaway ..."):
         for path in logs:
             log = measured(
                 path, mapping=mapping, memory_gib=memory_gib, resample_hz=resample_hz, use=use
             )
-            reports.append(find_breakaway_events(log, passed_share=passed_share))
+            reports.append(find_breakaway_events(log, passed_share=passed_share, rig=stands))
             if not use and "friction_n" in log.channels:
                 hints.append(
                     f"- {log.name}: this uses force_n; --use force_n=friction_n takes friction"
                 )
         found = fit_population(reports, passed_share=passed_share) if population else None
     if json:
-        say_json({"logs": [asdict(report) for report in reports], **_fits(found)})
+        say_json({"logs": [_plain(report) for report in reports], **_fits(found)})
         return
     say(_table(reports))
     for report in reports:
         for reason in report.refused:
             say(f"- {report.name}: {reason}")
+        if report.spikes:
+            say(f"- {report.name}: {_spikes(report)}")
         if report.offset_n is None:
             say(f"- {report.name}: offset unknown, {report.offset_reason}")
     for hint in hints:
@@ -78,9 +83,14 @@ def events(
             say(f"- {note}")
 
 
+def _plain(report: BreakawayReport) -> dict[str, object]:
+    rig = None if report.rig is None else report.rig.model_dump()
+    return {**asdict(report), "rig": rig}
+
+
 def _table(reports: list[BreakawayReport]) -> Sheet:
-    columns = ["log", "time", "breakaway", "", "sliding", "ratio", "presliding", "loading"]
-    shown = Sheet("Breakaway, offset subtracted", columns, numbers=columns[1:3] + columns[4:])
+    columns = ["log", "time", "breakaway", "±", "", "sliding", "ratio", "presliding", "loading"]
+    shown = Sheet("Breakaway, offset subtracted", columns, numbers=columns[1:4] + columns[5:])
     for report in reports:
         for event in report.events:
             rate = event.loading_rate_n_per_s
@@ -88,6 +98,7 @@ def _table(reports: list[BreakawayReport]) -> Sheet:
                 report.name,
                 f"{event.time_s:.3f} s",
                 show("force_n", event.breakaway_force_n),
+                show("force_n", float(f"{event.breakaway_error_n:.2g}")),
                 "at least" if event.is_lower_bound else "",
                 show("force_n", event.sliding_force_n),
                 ""
@@ -97,6 +108,15 @@ def _table(reports: list[BreakawayReport]) -> Sheet:
                 "" if rate is None else f"{rate:.3g} N/s",
             )
     return shown
+
+
+def _spikes(report: BreakawayReport) -> str:
+    first = report.spikes[0]
+    stand = "stands" if len(report.spikes) == 1 else "stand"
+    return (
+        f"{counted(len(report.spikes), 'single sample')} of the force {stand} alone, the first of "
+        f"{show('force_n', first.force_n)} at {first.time_s:.6g} s; they are not taken for load"
+    )
 
 
 def _population(found: Population) -> Sheet:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
+from math import inf
 from typing import TYPE_CHECKING
 
 from breakaway.cli.quantity import show, show_uncertain, split_unit
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from breakaway.measure.identification import (
         AsymmetricFit,
         ComparedLaw,
+        Estimate,
         Identification,
         InertiaFrictionFit,
         Prediction,
@@ -74,7 +76,7 @@ def law_tables(
     found: Identification, compared: Sequence[ComparedLaw], held_out: Prediction | None
 ) -> list[Sheet | str]:
     """Give the tables of a law that was fitted by simulation."""
-    from breakaway.measure.identification.verdicts import stiction_peak
+    from breakaway.measure.identification.curve import peak_in_words
 
     parts: list[Sheet | str] = []
     if compared:
@@ -90,7 +92,7 @@ def law_tables(
     if held_out is not None:
         predicted = show(_named(held_out.channel), held_out.rms_error)
         told.append(f"RMS error on the held-out rows: {predicted}")
-    told.append(stiction_peak({one.name: one for one in found.estimates}, found.verdicts))
+    told.append(peak_in_words(found))
     told += [*found.log.history, *found.notes]
     return [*parts, *(f"- {note}" for note in told)]
 
@@ -110,12 +112,18 @@ def _estimates(found: Identification) -> Sheet:
         numbers=["value", "std. error", "95 % interval"],
         prose=["told by the log"],
     )
-    for one in found.estimates:
+    for one in (*found.estimates, *found.combined):
         words, unit = split_unit(one.name)
         value, error = show_uncertain(one.value, one.standard_error)
-        ends = f"{one.low:.4g} to {one.high:.4g}"
-        shown.add(words, value, error, ends, unit, "yes" if one.identifiable else one.remark)
+        told = one.remark or "yes"
+        shown.add(words, value, error, _ends(one), unit, told)
     return shown
+
+
+def _ends(one: Estimate) -> str:
+    if one.high == inf:
+        return f"at least {one.low:.4g}"
+    return f"{one.low:.4g} to {one.high:.4g}"
 
 
 def _open(found: Identification) -> Sheet:

@@ -13,8 +13,8 @@ from breakaway.base.reading import is_file, is_folder, is_there
 from breakaway.cli import identify_options as options
 from breakaway.cli.identified import law_tables, regression_tables
 from breakaway.cli.identify_options import LawChoice, LossChoice, MotionChoice
-from breakaway.cli.measured import measured, pair
-from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Use
+from breakaway.cli.measured import measured, pair, rig_of
+from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Rig, Use
 from breakaway.cli.progress import counted
 from breakaway.cli.show import busy, say, say_json, say_written
 
@@ -46,6 +46,7 @@ def identify(
     out: options.Out = None,
     report: options.Report = False,
     resample_hz: ResampleHz = None,
+    rig: Rig = None,
     lowpass_hz: options.LowpassHz = None,
     decimation: options.Decimation = None,
     json: Json = False,
@@ -70,6 +71,7 @@ def identify(
         "--asymmetric": asymmetric,
         "--position-dependent": position_dependent,
         "--motion": motion is not MotionChoice.IMPOSED,
+        "--rig": rig,
     }
     _refuse_unused(law, only_laws, decimation)
     read = measured(
@@ -92,6 +94,7 @@ def identify(
         "fixed": _fixed(fix or []),
         "free": tuple(free or ()),
         "lowpass_hz": lowpass_hz,
+        "rig": rig_of(rig),
         "loss": loss.value,
         "starts": starts,
         "seed": seed,

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from breakaway.measure.identification import RigFile
     from breakaway.measure.logs import Log
 
 
@@ -36,6 +37,15 @@ def measured(
         channel, other = pair(given, "--use", "CHANNEL=OTHER")
         log = log.using(**{channel: other})
     return log
+
+
+def rig_of(path: Path | None) -> RigFile | None:
+    """Read the rig file that an option names, if it names one."""
+    if path is None:
+        return None
+    from breakaway.measure.identification import RigFile
+
+    return RigFile.load(path)
 
 
 def pair(text: str, option: str, form: str) -> tuple[str, str]:

@@ -39,6 +39,13 @@ ResampleHz = Annotated[
     float | None,
     typer.Option(help="Bring channels with different time stamps to this rate, by interpolation."),
 ]
+Rig = Annotated[
+    Path | None,
+    typer.Option(
+        help="Rig file: stiffness, mass, filter and calibration (rig-from-blank writes one).",
+        metavar="FILE",
+    ),
+]
 Use = Annotated[
     list[str] | None,
     typer.Option(

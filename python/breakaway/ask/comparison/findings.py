@@ -10,6 +10,7 @@ from breakaway.ask.comparison.case_words import cases_in_words, listing
 from breakaway.ask.comparison.table import CRITERIA, Trials, case_of, paired, rank
 from breakaway.ask.comparison.training import training_sentences
 from breakaway.ask.studies.plan import Row
+from breakaway.ask.studies.statistics import fewest_pairs
 from breakaway.model.scenario.variation import VARIATIONS
 from breakaway.run.trials import Case
 
@@ -18,10 +19,15 @@ SURE = 0.05
 GENTLE_ENOUGH = 0.95
 """Share of gentle extractions below which it is said what fails a method."""
 WORDS = {"gentle": "gently", "strict": "within the strict limits"}
-CRITERION_WORDS = {
+CAUSE_WORDS = {
     "force": "the peak force",
     "jump": "the jump",
     "velocity": "the release velocity",
+    "released": "parts that stay in place",
+}
+KEPT_WORDS = {
+    **dict.fromkeys(CRITERIA, "within its limit for"),
+    "released": "which are all but",
 }
 
 Verdicts = dict[tuple[str, str], dict[Case, int]]
@@ -32,10 +38,11 @@ Leaders = dict[Case, tuple[str, ...]]
 
 def sentences_of(asked: Asked, trials: Trials, rows: Sequence[Row]) -> list[str]:
     """Say what was found: the gentlest, why the others fail, and what depends on the case."""
+    few = _too_few(asked, rows)
+    leading = [_leading(asked, trials, rows, name) for name in WORDS]
     return [
         *training_sentences(asked.methods, asked.seed, asked.numbers),
-        *_leading(asked, trials, rows, "gentle"),
-        *_leading(asked, trials, rows, "strict"),
+        *(few or [sentence for sentences in leading for sentence in sentences]),
         *_changing(asked, trials),
         *_one_variation(asked),
         *_failing(asked, rows),
@@ -46,7 +53,7 @@ def sentences_of(asked: Asked, trials: Trials, rows: Sequence[Row]) -> list[str]
 
 def notes_of(asked: Asked) -> list[str]:
     """Say what has to be known before the sentences are trusted."""
-    pairs = len(asked.methods) * (len(asked.methods) - 1) // 2 * len(asked.cases)
+    pairs = _pairs(asked)
     notes = [
         f"a part is freed gently if it is released and suffers at most {_limits(asked, 'gentle')}",
         f"the strict limits are {_limits(asked, 'strict')}",
@@ -64,6 +71,23 @@ def notes_of(asked: Asked) -> list[str]:
     return notes
 
 
+def _pairs(asked: Asked) -> int:
+    """Count the pairs of methods over all cases."""
+    return len(asked.methods) * (len(asked.methods) - 1) // 2 * len(asked.cases)
+
+
+def _too_few(asked: Asked, rows: Sequence[Row]) -> list[str]:
+    """Say so where no difference can be clear, whatever the parts do."""
+    pairs, parts = _pairs(asked), rows[0]["runs"]
+    if not pairs or parts >= fewest_pairs(SURE / pairs):
+        return []
+    return [
+        f"too few parts to tell the methods apart: a difference with p < {SURE / pairs:.2g} needs "
+        f"{fewest_pairs(SURE / pairs)} parts that only one of two methods frees, and {parts} were "
+        "tried; raise --runs"
+    ]
+
+
 def _limits(asked: Asked, name: str) -> str:
     limits = getattr(asked.population, name)
     return (
@@ -75,7 +99,7 @@ def _limits(asked: Asked, name: str) -> str:
 def verdicts_of(asked: Asked, trials: Trials, name: str) -> Verdicts:
     """Judge every pair of methods in every case, by the parts that only one of them spares."""
     pairs = list(combinations(asked.names, 2))
-    allowed = SURE / max(1, len(pairs) * len(asked.cases))
+    allowed = SURE / max(1, _pairs(asked))
     verdicts: Verdicts = {}
     for one, other in pairs:
         for case in asked.cases:
@@ -207,24 +231,23 @@ def _one_variation(asked: Asked) -> list[str]:
 
 
 def _failing(asked: Asked, rows: Sequence[Row]) -> list[str]:
-    """Say, of each method that is not gentle enough, which limit most parts pass."""
+    """Say, of each method, in the cases in which it is not gentle enough, why most parts fail."""
     said = []
     for method in asked.names:
         of_method = [row for row in rows if row["method"] == method]
-        if all(row["gentle_share"] >= GENTLE_ENOUGH for row in of_method):
+        failing = [row for row in of_method if row["gentle_share"] < GENTLE_ENOUGH]
+        if not failing:
             continue
         by_criterion: dict[str, list[Row]] = {}
-        for row in of_method:
+        for row in failing:
             by_criterion.setdefault(_failing_most(row), []).append(row)
         gentle = _range([row["gentle_share"] for row in of_method])
         parts = []
         for name, found in by_criterion.items():
             cases = cases_in_words([case_of(row) for row in found], asked.cases)
-            where = f" under {cases}" if len(by_criterion) > 1 else ""
+            where = f" under {cases}" if len(found) < len(of_method) else ""
             kept = _range([row[f"{name}_share"] for row in found])
-            parts.append(
-                f"{CRITERION_WORDS[name]}{where}, within its limit for {kept} of the parts"
-            )
+            parts.append(f"{CAUSE_WORDS[name]}{where}, {KEPT_WORDS[name]} {kept} of the parts")
         said.append(
             f"{method} frees {gentle} gently; it fails most often because of {' and '.join(parts)}"
         )
@@ -232,7 +255,9 @@ def _failing(asked: Asked, rows: Sequence[Row]) -> list[str]:
 
 
 def _failing_most(row: Row) -> str:
-    return min(CRITERIA, key=lambda name: float(row[f"{name}_share"]))
+    """Name the limit that fewest parts keep; staying in place where all that are free keep all."""
+    worst = min(CRITERIA, key=lambda name: float(row[f"{name}_share"]))
+    return worst if row[f"{worst}_share"] < row["released_share"] else "released"
 
 
 def _left_behind(asked: Asked, rows: Sequence[Row]) -> list[str]:

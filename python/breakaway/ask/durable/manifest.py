@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -87,10 +88,23 @@ def manifest_with(
         "format": FORMAT,
         "breakaway_version": __version__,
         "libraries": {name: version(name) for name in libraries},
-        "asked": dict(asked),
+        "asked": _as_words(dict(asked)),
         **more,
     }
     return manifest | {"identity": identity_of(manifest)}
+
+
+def _as_words(content: Any) -> Any:  # noqa: ANN401 - any JSON
+    """Give infinite ends, such as those of a bound, as words: JSON has no number for them.
+
+    >>> _as_words({"stiffness_n_per_m": [1e6, float("inf")]})
+    {'stiffness_n_per_m': [1000000.0, 'inf']}
+    """
+    if isinstance(content, dict):
+        return {name: _as_words(value) for name, value in content.items()}
+    if isinstance(content, list):
+        return [_as_words(value) for value in content]
+    return str(content) if isinstance(content, float) and not isfinite(content) else content
 
 
 def read_manifest(folder: Path, called: str) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil, log, log1p
+from math import ceil, floor, log, log1p, log2
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,6 +122,29 @@ def _values_outside(count: int, tail: float) -> int:
         else:
             many = middle - 1
     return few
+
+
+def fewest_pairs(p_max: float) -> int:
+    """Give the fewest cases on which two ways can differ with a p value below a limit.
+
+    ::
+
+        p = 2 / 2^n       where all n cases are survived by the same way alone
+
+    is the smallest p value that `mcnemar` gives for n cases.
+
+    Parameters
+    ----------
+    p_max : float
+        Above 0 and at most 1.
+
+    Examples
+    --------
+    >>> fewest_pairs(0.05), fewest_pairs(0.00025)
+    (6, 13)
+
+    """
+    return floor(2.0 - log2(p_max))
 
 
 def mcnemar(only_first: int, only_second: int) -> float:

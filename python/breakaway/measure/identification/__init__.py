@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from breakaway.measure.identification.blank import Blank, BlankFigure, rig_from_blank
 from breakaway.measure.identification.cascade import Cascade
 from breakaway.measure.identification.censored import FittedDistribution, fit_distribution
 from breakaway.measure.identification.comparison import ComparedLaw, compare_laws
 from breakaway.measure.identification.events import (
     BreakawayEvent,
     BreakawayReport,
+    Spike,
     find_breakaway_events,
 )
 from breakaway.measure.identification.identifiability import Identifiability, identifiability
@@ -24,6 +26,7 @@ from breakaway.measure.identification.laws import LAWS
 from breakaway.measure.identification.population import Population, fit_population
 from breakaway.measure.identification.prediction import Prediction
 from breakaway.measure.identification.result import Identification
+from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.sliding import Reversal, SlidingLevel
 from breakaway.measure.identification.uncertainty import Posterior, Profile
 from breakaway.measure.identification.verdicts import Estimate, Excitation, Verdict
@@ -32,6 +35,8 @@ __all__ = [
     "LAWS",
     "NOT_IDENTIFIED",
     "AsymmetricFit",
+    "Blank",
+    "BlankFigure",
     "BreakawayEvent",
     "BreakawayReport",
     "Cascade",
@@ -48,7 +53,9 @@ __all__ = [
     "Prediction",
     "Profile",
     "Reversal",
+    "RigFile",
     "SlidingLevel",
+    "Spike",
     "SymmetricFit",
     "Verdict",
     "compare_laws",
@@ -58,4 +65,5 @@ __all__ = [
     "identifiability",
     "identify",
     "identify_inertia_friction",
+    "rig_from_blank",
 ]

@@ -13,6 +13,8 @@ from breakaway.base.arguments import check_arguments
 from breakaway.base.one_line import OneLine, counted
 from breakaway.base.text import shown
 from breakaway.errors import LogError
+from breakaway.measure.identification.faults.spikes import spikes
+from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.sliding import (
     FAST,
     FEWEST_SAMPLES,
@@ -25,6 +27,7 @@ from breakaway.measure.identification.sliding import (
 )
 from breakaway.measure.identification.stretches import (
     RESOLVED,
+    Places,
     Stretch,
     Stretches,
     find_stretches,
@@ -50,16 +53,31 @@ WORTH = 0.25
 PROMINENT = 0.5
 """A peak after no rest is taken as a breakaway if it exceeds the sliding level by this share."""
 
+RISING_SAMPLES = 3
+"""Fewest samples within the rise of a load that show how it rises."""
+
+FILTER_RISE = 0.35
+"""Rise of a step through a low-pass from 10 to 90 %, in periods of its cutoff."""
+
 SATURATED_SAMPLES = 4
 """A peak of as many equal samples is cut off."""
+
+
+@dataclass(frozen=True)
+class Spike:
+    """A single sample of the force that stands alone."""
+
+    time_s: float
+    force_n: float
 
 
 @dataclass(frozen=True, kw_only=True)
 class BreakawayEvent:
     """A start from rest: what load the joint held, and what it took to keep sliding.
 
-    Forces are magnitudes in the direction of motion. Those named ``raw`` are as measured; the
-    others have the report's offset taken off where it is known, else they equal the raw ones.
+    Forces are magnitudes in the direction of motion, at the part where a rig is given. Those
+    named ``raw`` are with the offset of the sensor; the others have the report's offset taken off
+    where it is known, else they equal the raw ones.
 
     Attributes
     ----------
@@ -81,10 +99,11 @@ class BreakawayEvent:
     load_start_s : float or None
         Time at which the load starts to grow.
     rest_s : float
-        How long the part is seen at rest before.
+        How long the part is seen at rest before, without the time of gaps.
     fallen_share : float or None
         How much of the way from the peak down to the sliding level was recorded before a gap,
-        or before the log ends: 1 where there is none.
+        or before the log ends: 1 where there is none. None where that way is no longer than
+        a tenth of the sliding friction, or the sliding level is not known.
     is_lower_bound : bool
         Whether the joint may have held more than was recorded.
     reason : str
@@ -92,10 +111,13 @@ class BreakawayEvent:
     force_noise_n : float
         Standard deviation of the force's noise.
     breakaway_error_n : float
-        Standard uncertainty of ``breakaway_force_n``, from noise and offset.
-    between_samples_n : float or None
-        What the load gains in one time step: about as much may the peak between two samples
-        exceed the recorded one.
+        Standard uncertainty of ``breakaway_force_n``, from noise and offset, and of a rig from
+        the load cell's gain and the inertia that was taken off.
+    sliding_error_n : float or None
+        That of ``sliding_force_n``, from offset and gain.
+    unseen_gain_n : float or None
+        What the load gains in one time step and in the time constant of the rig's filter: about
+        as much may the peak exceed the recorded one.
 
     """
 
@@ -115,15 +137,17 @@ class BreakawayEvent:
     reason: str
     force_noise_n: float
     breakaway_error_n: float
-    between_samples_n: float | None
+    sliding_error_n: float | None
+    unseen_gain_n: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class BreakawayReport(OneLine):
     """What a log shows of breakaway, and why it does not show more.
 
-    ``offset_n`` is None, with its reason, where it cannot be estimated. ``gaps_s`` has the
-    stamps before and after each gap. ``settings`` has those that the search was made with.
+    ``offset_n`` is None, with its reason, where it cannot be estimated. ``spikes`` are single
+    samples of the force that stand alone and are taken for no load. ``gaps_s`` has the
+    stamps before and after each gap. ``rig`` and ``settings`` are what the search was made with.
     """
 
     name: str
@@ -136,10 +160,12 @@ class BreakawayReport(OneLine):
     offset_error_n: float | None
     offset_reason: str
     force_noise_n: float
+    spikes: tuple[Spike, ...]
     position_resolution_m: float
     rest_speed_m_per_s: float
     speed_window_s: float
     gaps_s: tuple[tuple[float, float], ...]
+    rig: RigFile | None
     settings: Mapping[str, float | None]
 
     def __repr__(self) -> str:
@@ -158,6 +184,7 @@ def find_breakaway_events(
     sliding_window_s: float | None = None,
     passed_share: float = 0.5,
     offset_n: float | None = None,
+    rig: RigFile | None = None,
 ) -> BreakawayReport:
     """Find every start from rest in a log, and the load that it took.
 
@@ -171,9 +198,11 @@ def find_breakaway_events(
     describes. Sliding is established once the part has half of its median speed and the load
     has come back to a tenth of its excess over the sliding level; a load that stays at that
     level for as long as it took to get there has no peak. A gap of the log is never
-    interpolated: a peak that may lie in one makes the event a lower bound, or, where the load
-    before it did not exceed the sliding level, a refusal. A part that never moves gives one
-    lower bound, the largest load that it held.
+    interpolated: a peak beside one, or that may lie in one, makes the event a lower bound, or,
+    where the load before it did not come to the sliding level, a refusal. So does a load that
+    rises within fewer than three samples. A single sample that stands alone is no load: it is
+    listed, and the load before it is taken to last. A part that never moves gives one lower
+    bound, the largest load that it held.
 
     Background: C. Canudas de Wit et al., "A new model for control of systems with friction",
     IEEE Transactions on Automatic Control 40(3), 1995, shows how the breakaway force falls with
@@ -201,6 +230,10 @@ def find_breakaway_events(
     offset_n : float, optional
         Known offset of the force sensor; 0 leaves the force as it is. By default it is
         estimated.
+    rig : RigFile, optional
+        What lies between the part and the sensors: position and force at the part are searched,
+        a rise that its filter cannot follow makes a lower bound, and the uncertainty of the
+        load cell's gain goes into all errors.
 
     Returns
     -------
@@ -214,9 +247,9 @@ def find_breakaway_events(
 
     Notes
     -----
-    Not checked: inertia, so the acceleration times the mass must be small against friction,
-    or be taken off before; friction that differs between the directions, which looks like an
-    offset; a delay between force and position; moves too small or too slow for the noise of
+    Not checked: inertia, so the acceleration times the part's mass must be small against
+    friction, or be taken off before; friction that differs between the directions, which looks
+    like an offset; a delay between force and position; moves too small or too slow for the noise of
     the position; a log that begins within the standstill of a turn, which looks like a rest.
     The largest of many noisy samples exceeds the mean by about their noise.
 
@@ -245,20 +278,27 @@ def find_breakaway_events(
         "offset_n": offset_n,
     }
     _check_settings(settings)
+    places = spikes(log, "force_n")
+    held = log.force_n.copy()
+    held[places] = held[places - 1]
+    quiet = Log(force_n=held, channels=log.channels, source=log.source, sha256=log.sha256)
+    at_part = quiet if rig is None else rig.at_part(quiet)
     cut = find_stretches(
-        log,
+        at_part,
         rest_speed_m_per_s=rest_speed_m_per_s,
         min_rest_s=min_rest_s,
         min_slip_m=min_slip_m,
         gap_s=gap_s,
     )
-    levels = sliding_levels(cut, log.force_n)
+    levels = sliding_levels(cut, at_part.force_n)
     offset, error, why = (
         estimate_offset(levels) if offset_n is None else (float(offset_n), 0.0, "given")
     )
     search = _Search(
-        log, cut, noise(log.force_n), offset, error, sliding_window_s, passed_share,
-        friction(levels, offset),
+        log.name, cut, at_part.force_n, places, noise(at_part.force_n), offset, error,
+        sliding_window_s,
+        passed_share, friction(levels, offset), rig or RigFile(),
+        quiet.force_n - at_part.force_n,
     )  # fmt: skip
     events, refused = search.starts()
     return BreakawayReport(
@@ -272,10 +312,12 @@ def find_breakaway_events(
         offset_error_n=error,
         offset_reason=why,
         force_noise_n=search.noise_n,
+        spikes=tuple(Spike(float(log.t_s[k]), float(log.force_n[k])) for k in places),
         position_resolution_m=cut.resolution_m,
         rest_speed_m_per_s=cut.rest_speed_m_per_s,
         speed_window_s=cut.window_s,
         gaps_s=tuple((float(cut.t_s[g]), float(cut.t_s[g + 1])) for g in cut.gaps),
+        rig=rig,
         settings=settings,
     )
 
@@ -300,14 +342,18 @@ class _Start:
 class _Search:
     """All that the search for the events of one log needs to know."""
 
-    log: Log
+    name: str
     cut: Stretches
+    force_n: Array
+    spikes: Places
     noise_n: float
     offset_n: float | None
     offset_error_n: float | None
     window_s: float | None
     passed_share: float
     friction_n: float
+    rig: RigFile
+    inertia_n: Array
 
     @property
     def tolerance_n(self) -> float:
@@ -325,13 +371,16 @@ class _Search:
             found.append(self._without_rest(stretches[0]))
         for k, stretch in enumerate(stretches):
             if stretch.direction == 0:
-                jumps = self.cut.jumps(stretch.first, stretch.last)
-                found += [self._in_gap(g) for g in jumps]
-                if k + 1 < len(stretches):
-                    rest = max([stretch.first, *(g + 1 for g in jumps)])
-                    found.append(self._from_rest(rest, stretches[k + 1]))
+                found += [self._in_gap(g) for g in self.cut.jumps(stretch.first, stretch.last)]
+                if k + 1 < len(stretches) and not self._started_in_gap(stretch):
+                    found.append(self._from_rest(self.cut.rest_since(stretch), stretches[k + 1]))
         events = [event for event in found if isinstance(event, BreakawayEvent)]
         return events, [reason for reason in found if isinstance(reason, str)]
+
+    def _started_in_gap(self, rest: Stretch) -> bool:
+        """Whether a part that moved over a gap of a rest did not come to rest after it."""
+        since = self.cut.rest_since(rest)
+        return since > rest.first and not self.cut.shows_rest(since, rest.last + 1)
 
     def _in_gap(self, gap: int) -> str:
         t_s, x = self.cut.t_s, self.cut.position_m
@@ -341,7 +390,7 @@ class _Search:
         )
 
     def _start(self, rest: int, motion: Stretch) -> _Start:
-        load = motion.direction * self.log.force_n
+        load = motion.direction * self.force_n
         speed = motion.direction * self.cut.speed_m_per_s
         inside = np.zeros(len(load), dtype=bool)
         inside[motion.first : motion.last + 1] = True
@@ -423,11 +472,9 @@ class _Search:
 
     def _from_rest(self, rest: int, motion: Stretch) -> BreakawayEvent | str:
         t_s = self.cut.t_s
-        short = t_s[motion.first] - t_s[rest] < self.cut.window_s
-        unknown = not np.isfinite(self.cut.speed_m_per_s[rest : motion.first]).any()
-        if rest == 0 and (short or unknown):
-            return self._without_rest(motion)
-        if short or unknown:
+        if not self.cut.shows_rest(rest, motion.first):
+            if rest == 0:
+                return self._without_rest(motion)
             return (
                 f"the start at {t_s[motion.first]:.6g} s: too few samples show the part at rest "
                 "before it; its breakaway was not recorded"
@@ -436,7 +483,7 @@ class _Search:
         peak = self._peak(start)
         reason = self._hidden(start, peak)
         worth = max(SIGNIFICANCE * self.noise_n, WORTH * self.friction_n)
-        if "a gap" in reason and self._excess(start, peak) <= worth:
+        if self._gap_before(start, peak) and self._excess(start, peak) <= worth:
             return (
                 f"the start at {t_s[motion.first]:.6g} s: {reason}; the recorded load hardly "
                 "exceeds the sliding level, so its breakaway was not recorded"
@@ -481,13 +528,14 @@ class _Search:
         """Say what may hide a higher load than the recorded peak; empty where nothing does."""
         reasons = [self._gap_before(start, peak), self._after(start, peak)]
         reasons += [self._saturated(peak), self._loaded_at_start(start, peak)]
+        reasons += [self._beside_spike(start, peak), self._steep(start, peak)]
         return next((reason for reason in reasons if reason), "")
 
     def _gap_before(self, start: _Start, peak: int) -> str:
         begin = self._load_start(start, peak)
         t_s, gaps = self.cut.t_s, self.cut.gaps
         for gap in gaps[(gaps >= begin) & (gaps < peak)]:
-            if gap + 1 >= start.move or self.cut.moved_over(int(gap)):
+            if gap + 1 >= min(start.move, peak) or self.cut.moved_over(int(gap)):
                 return (
                     f"a gap of {t_s[gap + 1] - t_s[gap]:.3g} s lies between the start of loading "
                     "and the recorded peak"
@@ -497,16 +545,18 @@ class _Search:
     def _fallen(self, start: _Start, peak: int) -> tuple[float | None, int | None]:
         """Return the share of the fall that was recorded, and the gap or end that follows it."""
         last = start.end if start.level is None else self._settled(start, peak)
+        flat = self._excess(start, peak) <= self.tolerance_n
+        if flat:  # no fall says that the peak is over: the level itself has to be seen
+            last = min(last + FEWEST_SAMPLES, start.end)
         gaps = self.cut.gaps[(self.cut.gaps >= peak) & (self.cut.gaps < last)]
         ends = start.level is None and self._ends_loaded(start, peak)
         if not gaps.size and not ends:
             return 1.0, None
         stop = int(gaps[0]) if gaps.size else len(start.load) - 1
-        if start.level is None or start.load[peak] <= start.level:
+        if start.level is None or flat:
             return None, stop
-        lowest = float(start.load[peak : stop + 1].min())
-        drop = (start.load[peak] - lowest) / (start.load[peak] - start.level)
-        return float(min(drop, 1.0)), stop
+        drop = float(start.load[peak] - start.load[stop])
+        return min(drop / self._excess(start, peak), 1.0), stop
 
     def _ends_loaded(self, start: _Start, peak: int) -> bool:
         """Whether the log ends without another move, and with the load still near its peak."""
@@ -518,7 +568,10 @@ class _Search:
 
     def _after(self, start: _Start, peak: int) -> str:
         share, stop = self._fallen(start, peak)
-        if stop is None or (share is not None and share >= self.passed_share):
+        if stop is None:
+            return ""
+        significant = start.load[peak] - start.load[stop] > SIGNIFICANCE * self.noise_n
+        if share is not None and share >= self.passed_share and significant:
             return ""
         t_s = self.cut.t_s
         samples = f"{stop - peak} sample{'' if stop - peak == 1 else 's'}"
@@ -530,8 +583,40 @@ class _Search:
             return f"{gap} follows the recorded peak at once{fallen}"
         return f"{gap} begins {samples} after the recorded peak{fallen}"
 
+    def _beside_spike(self, start: _Start, peak: int) -> str:
+        """Say so where a single sample stands alone between the peak and sliding."""
+        last = peak + 1 if start.level is None else self._settled(start, peak)
+        beside = self.spikes[(self.spikes >= max(start.move, peak) - 1) & (self.spikes <= last)]
+        if not beside.size:
+            return ""
+        return (
+            f"a single sample at {self.cut.t_s[beside[0]]:.6g} s stands alone beside the peak; the "
+            "joint held more if it is no disturbance"
+        )
+
+    def _steep(self, start: _Start, peak: int) -> str:
+        """Say so where the load rises too fast for the samples, or for the rig's filter."""
+        begin = self._load_start(start, peak)
+        rise = start.load[peak] - start.load[begin]
+        places = np.flatnonzero(self._rising(start, begin, peak)) + begin
+        if rise <= SIGNIFICANCE * self.noise_n:
+            return ""
+        if places.size < RISING_SAMPLES:
+            return (
+                f"the load rises by {rise:.4g} N with {counted(places.size, 'sample')} on the way; "
+                "a higher peak may lie between two samples"
+            )
+        lasts = float(self.cut.t_s[places[-1]] - self.cut.t_s[places[0]])
+        filter_hz = self.rig.filter_hz
+        if filter_hz is None or lasts > 2.0 * FILTER_RISE / filter_hz:
+            return ""
+        return (
+            f"the load rises within {lasts:.2g} s, which the rig's filter of {filter_hz:g} Hz does "
+            "not follow; the peak was higher"
+        )
+
     def _saturated(self, peak: int) -> str:
-        force = self.log.force_n
+        force = self.force_n
         if force[peak] not in (force.max(), force.min()):
             return ""
         same = np.flatnonzero(force[peak:] != force[peak])
@@ -568,7 +653,8 @@ class _Search:
         force = held - zero
         slide = None if start.level is None else start.level - zero
         ratio = None if slide is None or slide <= self.noise_n else force / slide
-        step = float(np.median(np.diff(t_s)))
+        gain = 0.01 * self.rig.force_calibration_percent
+        unknown = math.hypot(self.offset_error_n or 0.0, gain * force)
         return BreakawayEvent(
             time_s=float(t_s[peak]),
             direction=start.direction,
@@ -580,41 +666,57 @@ class _Search:
             presliding_displacement_m=way if load_seen else None,
             loading_rate_n_per_s=rate,
             load_start_s=float(t_s[begin]) if load_seen else None,
-            rest_s=float(min(t_s[start.move], t_s[peak]) - t_s[start.rest]),
+            rest_s=self.cut.seen_s(start.rest, min(start.move, peak)),
             fallen_share=self._fallen(start, peak)[0],
             is_lower_bound=bool(reason),
             reason=reason,
             force_noise_n=self.noise_n,
-            breakaway_error_n=math.hypot(self.noise_n, self.offset_error_n or 0.0),
-            between_samples_n=None if rate is None else abs(rate) * step,
+            breakaway_error_n=math.hypot(self.noise_n, unknown, float(self.inertia_n[peak])),
+            sliding_error_n=None
+            if slide is None
+            else math.hypot(self.offset_error_n or 0.0, gain * slide),
+            unseen_gain_n=None if rate is None else abs(rate) * self._blind_s,
         )
+
+    @property
+    def _blind_s(self) -> float:
+        """A time step, and the time constant of the rig's filter."""
+        filter_hz = self.rig.filter_hz
+        lag_s = 0.0 if filter_hz is None else 1.0 / (2.0 * math.pi * filter_hz)
+        return float(np.median(np.diff(self.cut.t_s))) + lag_s
 
     def _rate(self, start: _Start, begin: int, peak: int) -> float | None:
         """Fit the slope of the load between 10 and 90 % of its rise."""
         if np.any((self.cut.gaps >= begin) & (self.cut.gaps < peak)):
             return None
         load, t_s = start.load[begin : peak + 1], self.cut.t_s[begin : peak + 1]
-        low, high = (load[0] + share * (load[-1] - load[0]) for share in LOADING)
-        inside = (load >= low) & (load <= high)
-        if np.count_nonzero(inside) < 3 or load[-1] - load[0] <= SIGNIFICANCE * self.noise_n:
+        inside = self._rising(start, begin, peak)
+        few = np.count_nonzero(inside) < RISING_SAMPLES
+        if few or load[-1] - load[0] <= SIGNIFICANCE * self.noise_n:
             return None
         t = t_s[inside] - t_s[inside].mean()
         return float(t @ load[inside] / (t @ t))
 
+    def _rising(self, start: _Start, begin: int, peak: int) -> npt.NDArray[np.bool_]:
+        """Tell which samples from ``begin`` to the peak lie between 10 and 90 % of the rise."""
+        load = start.load[begin : peak + 1]
+        low, high = (load[0] + share * (load[-1] - load[0]) for share in LOADING)
+        return np.asarray((load >= low) & (load <= high))
+
     def _never(self) -> BreakawayEvent:
         """Give the largest load that a part held which never moved."""
-        force = self.log.force_n - (self.offset_n or 0.0)
+        force = self.force_n - (self.offset_n or 0.0)
         peak = int(np.argmax(np.abs(force)))
         if abs(force[peak]) <= SIGNIFICANCE * self.noise_n:
             raise LogError(
-                f"{self.log.name}: the part neither moves (its travel must exceed "
+                f"{self.name}: the part neither moves (its travel must exceed "
                 f"{RESOLVED:g} times the noise of the position, {self.cut.resolution_m:.3g} m) nor "
                 f"is loaded (largest force {abs(force[peak]):.3g} N, which must exceed "
                 f"{SIGNIFICANCE:g} times its noise of {self.noise_n:.3g} N): record a log in which "
                 "it is"
             )
         direction = 1 if force[peak] > 0.0 else -1
-        load = direction * self.log.force_n
+        load = direction * self.force_n
         last = len(load) - 1
         start = _Start(direction, 0, last, last, load, np.zeros(len(load), dtype=bool), None)
         reason = "the part never moves; it held this load"

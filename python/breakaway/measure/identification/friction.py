@@ -21,7 +21,7 @@ class FrictionPath:
 
     ::
 
-        R = F - m a - F_0 - k_r (x - x_0)
+        R = F + F_out - m a - F_0 - d t - k_r (x - x_0)
     """
 
     position_m: Array
@@ -40,8 +40,7 @@ def measured_friction(found: Identification) -> FrictionPath:
 
     """
     rows, places = fitted_rows(found)
-    x, v, a, force = rows.columns[:4, places]
-    return _path(found, x, v, a, force)
+    return _path(found, rows.columns[9:11, places], *rows.columns[:4, places])
 
 
 def simulated_friction(found: Identification) -> FrictionPath:
@@ -59,23 +58,25 @@ def simulated_friction(found: Identification) -> FrictionPath:
     rows, places = fitted_rows(found)
     fit = found.fit
     if found.settings.motion == "imposed":
-        x, v, a = rows.columns[:3, places]
-        return _path(found, x, v, a, fit.force_n)
+        return _path(found, rows.columns[9:11, places], *rows.columns[:3, places], fit.force_n)
     settings = RunSettings("imposed", lowpass_hz=rows.lowpass_hz, origin_m=found.settings.origin_m)
     parts = []
     for segment in range(int(fit.segment[-1]) + 1):
         own = fit.segment == segment
         log = Log(t_s=fit.t_s[own], position_m=fit.position_m[own], force_n=fit.force_n[own])
         parts.append(measured_rows(log, settings).columns[:4])
-    x, v, a, force = np.concatenate(parts, axis=1)
-    return _path(found, x, v, a, force)
+    return _path(found, rows.columns[9:11, places], *np.concatenate(parts, axis=1))
 
 
-def _path(found: Identification, x: Array, v: Array, a: Array, force: Array) -> FrictionPath:
+def _path(
+    found: Identification, beside: Array, x: Array, v: Array, a: Array, force: Array
+) -> FrictionPath:
+    """Take off inertia and rig; ``beside`` are the outside force and the time from the start."""
     numbers = found.internals.problem.layout.numbers(found.internals.best)
-    mass, spring = (numbers[SHARED.index(name)] for name in ("mass_kg", "spring_n_per_m"))
+    named = ("mass_kg", "spring_n_per_m", "drift_n_per_s")
+    mass, spring, drift = (numbers[SHARED.index(name)] for name in named)
     offset = numbers[len(SHARED) + found.fit.segment]
-    friction = force - mass * a - offset - spring * x
+    friction = force + beside[0] - mass * a - offset - drift * beside[1] - spring * x
     return FrictionPath(x + found.settings.origin_m, v, friction, found.fit.segment)
 
 
@@ -103,7 +104,7 @@ def steady_friction(found: Identification, speeds: Array, numbers: Array) -> Arr
     """
     still, huge = np.zeros_like(speeds), 1e12 * np.sign(speeds)
     period = np.ones_like(speeds)
-    columns = [still, speeds, still, huge, still, still, period, speeds, huge]
+    columns = [still, speeds, still, huge, still, still, period, speeds, huge, still, still]
     rows = Rows(found.log, np.array(columns), even=True, lowpass_hz=None)
     segments = [(row, row + 1) for row in range(len(speeds))]
     record = core_record(rows, segments, found.law, RunSettings("imposed"))

@@ -30,10 +30,14 @@ REACH = 1e4
 
 @dataclass(frozen=True)
 class Scales:
-    """Rough size of everything in a log, which guesses and bounds come from."""
+    """Rough size of everything in a log, which guesses and bounds come from.
+
+    ``hidden_mass_kg`` is the largest mass that would not show, 0 where one shows or is given.
+    """
 
     mass_kg: float
     mass_shows: bool
+    hidden_mass_kg: float
     coulomb_n: float
     viscous_n_s_per_m: float
     offset_n: float
@@ -43,6 +47,7 @@ class Scales:
     noise_m: float
     velocity_noise_m_per_s: float
     period_s: float
+    duration_s: float
 
     def stiffest(self, settings: RunSettings) -> float:
         """Return the largest stiffness in N/m that can be told, or simulated."""
@@ -61,7 +66,8 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
         The part never moves, or the force is 0 throughout.
 
     """
-    x, v, a, force = rows.columns[:4, chosen]
+    x, v, a = rows.columns[:3, chosen]
+    force = rows.driving_force_n[chosen]
     log, noise = rows.log, noise_floor(rows.log, "position_m")
     noise_m = max(noise.white, noise.quantization)
     travel, speed = float(np.ptp(x)), float(np.quantile(np.abs(v), 0.99))
@@ -76,16 +82,20 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     _check_dissipation(log, force, v)
     held = np.zeros_like(force) if mass_kg is None else mass_kg * a
     columns = np.column_stack([a, v, np.sign(v), np.ones_like(v)])[moving]
+    if np.all(columns[:, 2] == columns[0, 2]):
+        columns = columns[:, :3]
     size = float(np.sqrt(np.mean(force**2)))
-    inertia = mass_kg if mass_kg is not None else _inertia(columns, force[moving], size)
+    inertia, hidden = (mass_kg, 0.0) if mass_kg is not None else _inertia(columns, force[moving])
     if mass_kg is not None or inertia == 0.0:
         columns[:, 0] = 0.0
     found = np.linalg.lstsq(columns, (force - held)[moving], rcond=None)[0]
+    found = np.append(found, 0.0)[:4]
     coulomb = max(float(found[2]), 0.05 * size)
     fallback = 0.01 * size / max(float(np.std(a)), 1e-300)
     return Scales(
         mass_kg=inertia if inertia > 0.0 else fallback,
         mass_shows=inertia > 0.0,
+        hidden_mass_kg=hidden,
         coulomb_n=coulomb,
         viscous_n_s_per_m=max(float(found[1]), 0.02 * coulomb / speed),
         offset_n=float(found[3]),
@@ -95,20 +105,23 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
         noise_m=noise_m,
         velocity_noise_m_per_s=_velocity_noise(rows, noise_m),
         period_s=float(np.median(np.diff(log.t_s))),
+        duration_s=float(log.t_s[-1] - log.t_s[0]),
     )
 
 
-def _inertia(columns: Array, force: Array, size: float) -> float:
-    """Return the mass in kg that the regression finds, or 0 where the force hardly shows it."""
+def _inertia(columns: Array, force: Array) -> tuple[float, float]:
+    """Return the mass in kg that the regression finds, and the largest that would not show."""
+    size = float(np.sqrt(np.mean(force**2)))
+    share_kg = size / max(float(np.sqrt(np.mean(columns[:, 0] ** 2))), 1e-300)
     found, _, rank, _ = np.linalg.lstsq(columns, force, rcond=None)
     if rank < columns.shape[1]:
-        return 0.0
+        return 0.0, INERTIA_SHARE * share_kg
     residual = force - columns @ found
     spread = np.linalg.inv(columns.T @ columns)[0, 0]
-    error = float(np.sqrt(spread * float(residual @ residual) / len(force)))
-    share = abs(float(found[0])) * float(np.sqrt(np.mean(columns[:, 0] ** 2))) / size
-    shows = found[0] > INERTIA_ERRORS * error and share > INERTIA_SHARE
-    return float(found[0]) if shows else 0.0
+    error = INERTIA_ERRORS * float(np.sqrt(spread * float(residual @ residual) / len(force)))
+    if found[0] > max(error, INERTIA_SHARE * share_kg):
+        return float(found[0]), 0.0
+    return 0.0, min(max(float(found[0]), 0.0) + error, INERTIA_SHARE * share_kg)
 
 
 def _velocity_noise(rows: Rows, noise_m: float) -> float:
@@ -159,6 +172,10 @@ def first_guess(parameter: Parameter, sizes: Scales, settings: RunSettings) -> t
         "elastic_share": (0.5, 0.7),
         "coulomb_slope_n_per_m": (0.0, 0.3 * slope),
         "spring_n_per_m": (0.0, 0.3 * slope),
+        "delay_s": (0.0, 0.0),
+        "drift_n_per_s": (0.0, 0.1 * sizes.force_n / sizes.duration_s),
+        "warming_per_s": (0.0, 0.1 / sizes.duration_s),
+        "backlash_m": (10.0 * sizes.noise_m, 5.0 * sizes.noise_m),
     }
     if parameter.name in known:
         return known[parameter.name]
@@ -178,6 +195,8 @@ def bounds_of(
         low, high = guess / REACH, guess * REACH
     if parameter.may_vanish:
         high = guess * REACH
+    if parameter.name == "warming_per_s":
+        low, high = -0.95 / sizes.duration_s, 19.0 / sizes.duration_s
     if parameter.name == "stiffness_n_per_m" and settings.motion != "imposed":
         high = sizes.stiffest(settings)
     return low, high

@@ -10,7 +10,9 @@ import numpy as np
 from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
+from breakaway.measure.identification.faults.rig import idle, rig_parameters
 from breakaway.measure.identification.guess import Scales, internal_guess, scales, stand_in
+from breakaway.measure.identification.lag import Lag
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
 from breakaway.measure.identification.output_error import Problem
 from breakaway.measure.identification.record import (
@@ -31,7 +33,13 @@ from breakaway.measure.identification.settings import (
     checked_spans,
     known,
 )
-from breakaway.measure.identification.verdicts import Excitation, Verdict, excitation, unexcited
+from breakaway.measure.identification.verdicts import (
+    Excitation,
+    Places,
+    Verdict,
+    excitation,
+    unexcited,
+)
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.controller import Pid
@@ -42,8 +50,12 @@ class Prepared:
     """A problem as it is handed to the optimizer, and what was found out on the way."""
 
     rows: Rows
+    places: Places
     spans: tuple[Span, ...]
+    segments: tuple[tuple[int, int], ...]
+    owners: tuple[int, ...]
     held: Mapping[str, float]
+    neutral: Mapping[str, float]
     held_back: tuple[Verdict, ...]
     excitation: Excitation
     sizes: Scales
@@ -73,33 +85,39 @@ def prepare(
     """
     rows = measured_rows(log, settings)
     spans, segments, owners = segments_of(rows, checked_spans(repeats))
-    parameters = law.parameters(len(spans))
+    parameters = (*law.parameters(len(spans)), *rig_parameters(settings.motion))
     names = [one.name for one in parameters]
     check_fixed(fixed, parameters, settings.motion)
     check_free(free, fixed, names)
     check_count(law.name, parameters, len(spans))
     places = np.concatenate([np.arange(first, end) for first, end in segments])
     sizes = scales(rows, places, fixed.get("mass_kg"))
-    shown = excitation(rows, places)
+    shown = excitation(rows, places, sizes.mass_kg if sizes.mass_shows else 0.0)
     candidates = [name for name in names if name not in fixed and name not in free]
     mass_shows = sizes.mass_shows or method == "least_squares"
     back = unexcited(candidates, shown, settings, mass_shows)
-    neutral = {name: value for name, (value, _) in back.items()}
-    numbers = {**stand_in(law, settings, sizes), **neutral, **fixed}
+    resting = idle(names, (*free, *fixed))
+    neutral = {name: value for name, (value, _) in back.items()} | {**resting, **fixed}
+    numbers = {**stand_in(law, settings, sizes), **neutral}
     layout = Layout.of(parameters, numbers, tuple(owners))
     channel = predicted_channel(settings.motion)
     measured = np.ascontiguousarray(rows.columns[0 if channel == "position_m" else 3][places])
     scale = 0.05 * sizes.force_n if channel == "force_n" else 0.01 * sizes.travel_m
     record = core_record(rows, segments, law, settings)
+    lag = Lag.of(log.t_s, segments, position=channel == "position_m")
     guess, spread, bounds = internal_guess(layout, sizes, settings, guesses)
     return Prepared(
         rows=rows,
+        places=places,
         spans=tuple(spans),
+        segments=tuple(segments),
+        owners=tuple(owners),
         held=dict(fixed),
+        neutral=neutral,
         held_back=tuple(verdict for _, verdict in back.values()),
         excitation=shown,
         sizes=sizes,
-        problem=Problem(record, layout, channel, measured, scale),
+        problem=Problem(record, layout, channel, measured, scale, lag),
         guess=guess,
         spread=spread,
         bounds=bounds,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -12,6 +12,10 @@ import numpy as np
 from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
+from breakaway.measure.identification.doubt import doubt, events, with_hidden_mass
+from breakaway.measure.identification.faults.delay import find_delay, with_delay
+from breakaway.measure.identification.faults.examine import examine
+from breakaway.measure.identification.faults.fault import Fault
 from breakaway.measure.identification.identifiability import Prepared, prepare
 from breakaway.measure.identification.inertia_friction import identify_inertia_friction
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
@@ -20,10 +24,11 @@ from breakaway.measure.identification.output_error import (
     Loss,
     Minimum,
     Progress,
+    minimize,
     minimize_all,
     screened_starts,
 )
-from breakaway.measure.identification.prediction import Prediction, predict_rows
+from breakaway.measure.identification.prediction import predict_rows
 from breakaway.measure.identification.record import (
     MOTIONS,
     MotionKind,
@@ -31,22 +36,27 @@ from breakaway.measure.identification.record import (
     Span,
 )
 from breakaway.measure.identification.result import Identification, Internals
+from breakaway.measure.identification.rig_file import RigFile
+from breakaway.measure.identification.rig_intervals import IN_SERIES, stiffness_is_told, with_rig
 from breakaway.measure.identification.settings import (
     at_least_one,
     check_run,
     check_seed,
     known,
 )
+from breakaway.measure.identification.together import sums, without_offset
 from breakaway.measure.identification.uncertainty import (
     NOT_IDENTIFIABLE,
     NOT_TOLD_FROM_0,
     Covariance,
     covariance,
+    few_events,
     interval,
 )
 from breakaway.measure.identification.verdicts import (
     Estimate,
     Verdict,
+    untold,
     verdicts,
 )
 from breakaway.measure.logs.log import Array, Log
@@ -84,6 +94,7 @@ def identify(
     starts: int = 8,
     seed: int = 0,
     method: Method = "output_error",
+    rig: RigFile | None = None,
     progress: Progress | None = None,
 ) -> Identification:
     """Identify a joint by output error: the parameters whose simulation is nearest to the log.
@@ -144,6 +155,9 @@ def identify(
     method : {'output_error', 'least_squares'}
         ``least_squares`` fits the law 'coulomb' to ``imposed`` motion, inertia included, where the
         model is linear: see `identify_inertia_friction`.
+    rig : RigFile, optional
+        What lies between the part and the sensors. Without it the stiffness of the joint is a
+        bound from below, and the gain of the load cell counts as exact.
     progress : callable, optional
         Called with starts done and starts in all.
 
@@ -192,11 +206,18 @@ def identify(
         lowpass_hz=lowpass_hz,
         steps=steps,
         origin_m=_origin(log, position_dependent, origin_m),
+        rig=rig,
     )
-    asked = prepare(log, chosen, settings, repeats, fixed or {}, free, guesses or {}, method)
+    seen = examine(
+        log, chosen, settings, (*free, *(fixed or {}), *(["repeats"] if repeats else []))
+    )
+    log, faults = seen.log, seen.faults
+    modeled = {} if method == "least_squares" else seen.modeled
+    free, guesses = (*free, *modeled), {**modeled, **(guesses or {})}
+    asked = prepare(log, chosen, settings, repeats, fixed or {}, free, guesses, method)
     if method == "least_squares":
         layout = asked.problem.layout
-        internal = _regressed(log, layout, chosen, settings, repeats, asked.held)
+        internal = _regressed(asked.rows.log, layout, chosen, settings, repeats, asked.held)
         best = Minimum(internal, 0.0, 1, converged=True)
         complete, starts, agreeing = True, 1, 1
     else:
@@ -206,7 +227,12 @@ def identify(
         best, agreeing, complete = minimize_all(
             asked.problem, drawn, asked.bounds, loss, MOST_EVALUATIONS, progress
         )
-    found = _Found(log, chosen, settings, asked, loss, seed)
+        late = find_delay(log, chosen, settings, asked.problem.layout.values(best.internal))
+        faults = faults if late is None else (*faults, late.fault)
+        if late and motion != "closed_loop" and "delay_s" not in (*free, *(fixed or {})):
+            asked = with_delay(log, chosen, settings, repeats, asked, late, free, best.internal)
+            best = minimize(asked.problem, asked.guess, asked.bounds, loss, MOST_EVALUATIONS)
+    found = _Found(log, chosen, settings, asked, loss, seed, faults)
     return found.result(best.internal, best.converged, complete, starts, agreeing)
 
 
@@ -252,8 +278,9 @@ class _Found:
     law: Law
     settings: RunSettings
     asked: Prepared
-    loss: str
+    loss: Loss
     seed: int
+    faults: tuple[Fault, ...]
 
     def result(
         self,
@@ -267,7 +294,16 @@ class _Found:
         residual, slopes = problem.residual_and_slopes(best)
         weighted = _robust(self.loss, residual)
         known = covariance(weighted * residual, weighted[:, None] * slopes)
+        known = few_events(known, events(self.asked, self.settings, best))
+        known = with_hidden_mass(known, self.asked, slopes)
+        in_doubt = None
+        if self.asked.excitation.broke_away:
+            in_doubt = doubt(self.asked, self.law, self.settings, self.loss, best, known)
+        known = known if in_doubt is None else in_doubt.known
         estimates = self._estimates(best, known)
+        estimates = estimates if in_doubt is None else in_doubt.judged(estimates)
+        combined = self._combined(best, known, estimates)
+        estimates = with_rig(self._judged(estimates), self.settings.rig)
         errors = residual * problem.scale
         rms = float(np.sqrt(np.mean(errors**2)))
         power = float(residual @ residual)
@@ -282,6 +318,7 @@ class _Found:
             spans=self.asked.spans,
             excitation=self.asked.excitation,
             estimates=tuple(_with_verdict(one, judged) for one in estimates),
+            combined=tuple(with_rig(combined, self.settings.rig)),
             fixed=dict(self.asked.held),
             rms_error=rms,
             relative_error_percent=percent,
@@ -289,7 +326,9 @@ class _Found:
             effective_rows=known.weight * len(residual),
             condition_number=known.condition_number,
             verdicts=judged,
+            faults=self.faults,
             notes=(
+                *map(str, self.faults),
                 *self._warnings(best, percent),
                 *self._notes(known, complete, converged, starts, agreeing),
             ),
@@ -305,16 +344,44 @@ class _Found:
                 self.law,
                 self.settings,
                 problem.layout.numbers(best),
+                delay_s=problem.layout.delay_s(best),
                 same=True,
             ),
             internals=Internals(problem, best, self.asked.bounds, known),
         )
 
-    def _fitted_rows(self, best: Array) -> Prediction:
-        numbers = self.asked.problem.layout.numbers(best)
-        return predict_rows(
-            self.asked.rows, self.asked.spans, self.law, self.settings, numbers, same=True
-        )
+    @property
+    def _goes_one_way(self) -> bool:
+        held = {one.parameter for one in self.asked.held_back}
+        return bool({"offset_n", "offset_1_n"} & held)
+
+    def _combined(
+        self, best: Array, known: Covariance, estimates: Sequence[Estimate]
+    ) -> tuple[Estimate, ...]:
+        """Return what the log tells of friction and offset together, where it goes one way."""
+        shown = self.asked.excitation
+        if not self._goes_one_way or shown.slips or not shown.broke_away:
+            return ()
+        return sums(self.asked.problem.layout, best, known.matrix, shown, estimates)
+
+    def _judged(self, estimates: Sequence[Estimate]) -> list[Estimate]:
+        """Take back what the motion of the log does not tell."""
+        shown = self.asked.excitation
+        names = [one.name for one in estimates]
+        held = [one.parameter for one in self.asked.held_back]
+        reasons = untold(names, shown, self.settings.motion, held)
+        out = [
+            replace(one, identifiable=False, remark=reasons[one.name])
+            if one.name in reasons
+            else one
+            for one in estimates
+        ]
+        values = {one.name: one.value for one in estimates}
+        if self._goes_one_way and "coulomb_n" in values:
+            place = names.index("coulomb_n")
+            stiction_n = values["coulomb_n"] * values.get("stiction_ratio", 1.0)
+            out[place] = without_offset(out[place], shown, stiction_n)
+        return out
 
     def _estimates(self, best: Array, known: Covariance) -> list[Estimate]:
         layout = self.asked.problem.layout
@@ -351,6 +418,9 @@ class _Found:
                 f"this law explains the log poorly, with an error of {percent:.0f} %: the "
                 "parameters mean little; try another law, motion or mapping"
             )
+        free = [one.name for one in self.asked.problem.layout.free]
+        if "stiffness_n_per_m" in free and not stiffness_is_told(self.settings.rig):
+            out.append(f"stiffness_n_per_m is {IN_SERIES}")
         places = [
             i for i, one in enumerate(self.asked.problem.layout.free) if "stribeck" in one.name
         ]
@@ -405,5 +475,5 @@ def _robust(loss: str, residual: Array) -> Array:
 def _with_verdict(estimate: Estimate, judged: Sequence[Verdict]) -> Estimate:
     for one in judged:
         if one.parameter == estimate.name and not one.identifiable and estimate.identifiable:
-            return Estimate(**{**vars(estimate), "identifiable": False, "remark": one.because})
+            return replace(estimate, identifiable=False, remark=one.because)
     return estimate

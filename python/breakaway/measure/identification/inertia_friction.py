@@ -191,7 +191,7 @@ def identify_inertia_friction(
     mass, up, down = moved.acceleration_m_per_s2, speed > 0.0, speed < 0.0
     peak = sign * np.exp(-((speed / (LOW_SPEED * np.abs(speed).max())) ** 2))
     columns = [mass, speed, sign, np.ones_like(speed), peak]
-    columns += [speed * up, speed * down, sign * up, sign * down, log.force_n]
+    columns += [speed * up, speed * down, sign * up, sign * down, log.driving_force_n]
     filtered = parallel_filter(np.column_stack(columns), decimation)
     force = filtered[:, 9]
     symmetric = least_squares(log, SYMMETRIC, filtered[:, :4], force)

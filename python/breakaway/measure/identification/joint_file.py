@@ -15,10 +15,11 @@ from breakaway.base.arguments import check_arguments
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import text_of
 from breakaway.errors import LogError, ScenarioError
+from breakaway.measure.identification.curve import peak_in_words
 from breakaway.measure.identification.inertia_friction import InertiaFrictionFit
 from breakaway.measure.identification.result import Identification
+from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.uncertainty import Posterior
-from breakaway.measure.identification.verdicts import stiction_peak
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.distribution import Samples
 from breakaway.model.scenario.files import parse_toml
@@ -59,6 +60,7 @@ class FitSettings(Model):
     repeats: list[list[float]]
     origin_m: float
     steps_per_row: Annotated[int, Field(ge=1)]
+    rig: RigFile | None = None
     loss: Name
     starts: Annotated[int, Field(ge=1)]
     seed: int
@@ -171,7 +173,8 @@ class JointFile(Model):
     joint: Joint
     rig: Rig
     standard_error: dict[str, NotNegative]
-    interval: dict[str, list[float]]
+    interval: dict[str, list[Annotated[float, Field(allow_inf_nan=True)]]]
+    """Name of a parameter -> its ends; the upper one is infinite for a bound from below."""
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
     not_identified: dict[str, Text]
@@ -470,13 +473,14 @@ def _provenance(found: Identification) -> Provenance:
             repeats=[list(span) for span in found.spans],
             origin_m=settings.origin_m,
             steps_per_row=settings.steps,
+            rig=settings.rig,
             loss=found.loss,
             starts=found.starts,
             seed=found.seed,
             complete=found.complete,
         ),
         samples=len(found.fit.t_s),
-        notes=[*found.notes, stiction_peak({e.name: e for e in found.estimates}, found.verdicts)],
+        notes=[*found.notes, peak_in_words(found)],
     )
 
 

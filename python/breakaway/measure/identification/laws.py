@@ -132,6 +132,9 @@ NEUTRAL: Mapping[str, float] = {
     "damping_n_s_per_m": 0.0,
     "coulomb_slope_n_per_m": 0.0,
     "elastic_share": 0.0,
+    "drift_n_per_s": 0.0,
+    "warming_per_s": 0.0,
+    "backlash_m": 0.0,
 }
 """Values of numbers that a law leaves out."""
 
@@ -140,12 +143,14 @@ NEUTRAL: Mapping[str, float] = {
 class Layout:
     """Where parameters go among the numbers of the core, for a record of several segments.
 
-    ``variable`` says of each number which free parameter it is, if any.
+    ``variable`` says of each number which free parameter it is, if any. ``held_delay_s`` is the delay
+    of the position where it is not free: it is no number of the core.
     """
 
     free: tuple[Parameter, ...]
     base: Array
     variable: tuple[int | None, ...]
+    held_delay_s: float
 
     @classmethod
     def of(
@@ -168,7 +173,17 @@ class Layout:
                         base[place] = fixed[parameter.name]
                     else:
                         variable[place] = free.index(parameter)
-        return cls(free, base, tuple(variable))
+        return cls(free, base, tuple(variable), fixed.get("delay_s", 0.0))
+
+    @property
+    def delay_place(self) -> int | None:
+        """Which free parameter the delay of the position is, if it is one."""
+        return next((i for i, one in enumerate(self.free) if one.name == "delay_s"), None)
+
+    def delay_s(self, internal: Array) -> float:
+        """Return the delay of the position in s."""
+        place = self.delay_place
+        return self.held_delay_s if place is None else float(internal[place])
 
     def numbers(self, internal: Array) -> Array:
         """Return the core's numbers for one set of parameters (n,), or for many (k, n)."""

@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 
 from breakaway._core import RigRecord
 from breakaway.base.threads import usable_processors
+from breakaway.measure.identification.lag import Lag
 from breakaway.measure.identification.laws import Layout
 from breakaway.measure.logs.log import Array
 
@@ -42,7 +43,7 @@ class Problem:
     """One record, one layout of parameters, and the channel whose error is made small.
 
     Residuals are divided by ``scale``, so that they are near 1 where the model is as good as the
-    measurement.
+    measurement, and times ``counted``, 0 for rows that are left out.
     """
 
     record: RigRecord
@@ -50,7 +51,9 @@ class Problem:
     channel: str
     measured: Array
     scale: float
+    lag: Lag
     every: int = 1
+    counted: Array | float = 1.0
     stop: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -65,7 +68,8 @@ class Problem:
         """Simulate the channel."""
         numbers = self.layout.numbers(internal).tolist()
         position, force = self.record.simulate(numbers)
-        return np.frombuffer(position if self._is_position else force)
+        found = np.frombuffer(position if self._is_position else force)
+        return self.lag.shifted(found, self.layout.delay_s(internal))
 
     def residual(self, internal: Array) -> Array:
         """Return (simulated - measured) / scale."""
@@ -75,25 +79,46 @@ class Problem:
 
     def _residual(self, predicted: Array) -> Array:
         with np.errstate(over="ignore", invalid="ignore"):
-            return _finite((predicted - self.measured[:: self.every]) / self.scale)
+            return _finite((predicted - self.measured[:: self.every]) / self.scale * self._counted)
+
+    @property
+    def _counted(self) -> Array | float:
+        return self.counted[:: self.every] if isinstance(self.counted, np.ndarray) else 1.0
 
     def residual_and_slopes(self, internal: Array) -> tuple[Array, Array]:
         """Return the residual and its derivatives with respect to the internal parameters."""
         if self.stop.is_set():
             raise Stopped
         layout = self.layout
+        late = layout.delay_place is not None or layout.held_delay_s != 0.0
+        every = 1 if late else self.every
         numbers = layout.numbers(internal).tolist()
-        out = self.record.differentiate(
-            numbers, list(layout.variable), self._is_position, self.every
-        )
+        out = self.record.differentiate(numbers, list(layout.variable), self._is_position, every)
         value, slopes = (np.frombuffer(one) for one in out)
+        by_row = np.zeros((len(value), len(layout.free)))
+        slopes = slopes.reshape(len(value), -1)
+        by_row[:, : slopes.shape[1]] = slopes
+        if late:
+            value, by_row = self._shifted(value, by_row, internal)
         with np.errstate(over="ignore", invalid="ignore"):
-            factor = layout.slope(internal) / self.scale
-            by_row = slopes.reshape(len(value), len(layout.free)) * factor
+            by_row *= layout.slope(internal) / self.scale
+            by_row *= np.reshape(self._counted, (-1, 1))
             return self._residual(value), np.nan_to_num(by_row, posinf=0.0, neginf=0.0)
+
+    def _shifted(self, value: Array, by_row: Array, internal: Array) -> tuple[Array, Array]:
+        """Shift values and slopes by the delay of the position, and add its own slope."""
+        delay_s, place = self.layout.delay_s(internal), self.layout.delay_place
+        moved = self.lag.shifted(by_row, delay_s)
+        if place is not None:
+            moved = moved.copy()
+            moved[:, place] = self.lag.slope(value, delay_s)
+        return self.lag.shifted(value, delay_s)[:: self.every], moved[:: self.every]
 
     def sums_of_squares(self, internal: Array, threads: int = 0) -> Array:
         """Return the sum of squared residuals of many sets of parameters (k, n), in lanes."""
+        if self.layout.held_delay_s or self.layout.delay_place is not None:
+            residuals = (self.residual(one) for one in internal)
+            return np.array([float(residual @ residual) for residual in residuals])
         numbers = np.ascontiguousarray(self.layout.numbers(internal).reshape(-1))
         pairs = np.frombuffer(self.record.misfits(numbers, threads or usable_processors()))
         sums = pairs.reshape(-1, 2)[:, 0 if self._is_position else 1] / self.scale**2

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 
 from breakaway.base.arguments import check_arguments
 from breakaway.base.one_line import OneLine, counted
@@ -33,6 +33,10 @@ QUANTITIES = (
 
 FIELDS = {"breakaway_force_n": "joint.stiction_n", "sliding_force_n": "joint.coulomb_n"}
 """Quantity -> the field of a scenario that it is."""
+
+
+SCALED: dict[Kind, tuple[str, ...]] = {"log_normal": ("median",), "normal": ("mean", "std")}
+"""Parameters that are as wrong as the gain of the load cell."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -160,7 +164,8 @@ def fit_population(
     parts : sequence of str, optional
         Name of the part of each log, one for each.
     confidence : float
-        Confidence of the intervals, > 0 and < 1.
+        Confidence of the intervals, > 0 and < 1. Those of forces allow for the gain of the load
+        cell, the largest uncertainty that a report's rig states, as one for all parts.
     passed_share : float
         As in `find_breakaway_events`, for logs.
 
@@ -220,6 +225,8 @@ def fit_population(
                 refusals = "".join(f"; {why}" for why in _refused(reports)[:3])
                 raise LogError(f"{quantity}: {error}{refusals}") from None
             notes.append(f"{quantity} is not fitted: {error}")
+    gain = 0.01 * max((r.rig.force_calibration_percent for r in reports if r.rig), default=0.0)
+    fits = {name: _with_gain(name, fit, gain) for name, fit in fits.items()}
     notes += [note for name, fit in fits.items() for note in _cautions(name, fit)]
     events = [len([e for k in places for e in reports[k].events]) for places in grouped.values()]
     return Population(
@@ -233,6 +240,28 @@ def fit_population(
         correlation=_correlation(fits, table, distribution),
         notes=tuple(notes),
     )
+
+
+def _with_gain(name: str, fit: FittedDistribution, gain: float) -> FittedDistribution:
+    """Return a fit of forces whose intervals allow for a gain that all of them share.
+
+    ::
+
+        half width² = that of the fit² + (z gain value)²
+    """
+    if name not in FIELDS or gain == 0.0:
+        return fit
+    z = float(ndtri(0.5 + 0.5 * fit.confidence))
+    errors, ends = dict(fit.standard_error), dict(fit.interval)
+    for parameter in SCALED[fit.kind]:
+        value, (low, high) = fit.parameters[parameter], fit.interval[parameter]
+        own = gain * abs(value)
+        errors[parameter] = math.hypot(errors[parameter], own)
+        ends[parameter] = (
+            value - math.hypot(value - low, z * own),
+            value + math.hypot(high - value, z * own),
+        )
+    return replace(fit, standard_error=errors, interval=ends)
 
 
 def _searched(log: Log, passed_share: float) -> BreakawayReport:

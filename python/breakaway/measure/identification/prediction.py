@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.base.one_line import OneLine, counted
+from breakaway.measure.identification.lag import Lag
 from breakaway.measure.identification.laws import SHARED, Law
 from breakaway.measure.identification.record import (
     Rows,
@@ -68,12 +69,13 @@ def predict_rows(
     settings: RunSettings,
     numbers: Array,
     *,
+    delay_s: float = 0.0,
     same: bool = False,
 ) -> Prediction:
     """Simulate spans of rows with the core's numbers.
 
     ``same`` takes the offsets as they are, for the very segments that were fitted; else the last
-    offset holds for all.
+    offset holds for all. ``delay_s`` is the delay of the measured position.
     """
     _, segments, _ = segments_of(rows, spans)
     if not same:
@@ -81,6 +83,9 @@ def predict_rows(
         numbers = np.concatenate([numbers[:shared], np.full(len(segments), numbers[-1])])
     out = core_record(rows, segments, law, settings).simulate(numbers.tolist())
     position, force = (np.frombuffer(values) for values in out)
+    channel = predicted_channel(settings.motion)
+    lag = Lag.of(rows.log.t_s, segments, position=channel == "position_m")
+    position, force = (lag.shifted(values, delay_s) for values in (position, force))
     places = np.concatenate([np.arange(first, end) for first, end in segments])
     owner = np.concatenate([np.full(end - first, i) for i, (first, end) in enumerate(segments)])
     return Prediction(
@@ -91,5 +96,5 @@ def predict_rows(
         measured_velocity_m_per_s=rows.columns[1][places],
         measured_force_n=rows.columns[3][places],
         segment=owner,
-        channel=predicted_channel(settings.motion),
+        channel=channel,
     )

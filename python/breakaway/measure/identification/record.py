@@ -13,6 +13,7 @@ from breakaway._core import RigRecord
 from breakaway.errors import LogError
 from breakaway.measure.identification.cascade import Cascade
 from breakaway.measure.identification.laws import Law
+from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.logs.derived import SPACING_TOLERANCE, derive_motion
 from breakaway.measure.logs.findings import GAP
 from breakaway.measure.logs.log import Array, Log
@@ -37,7 +38,8 @@ LIMITLESS_N = 1e12
 class RunSettings:
     """How a log is to be run, as `breakaway.identify` describes it.
 
-    ``origin_m`` is the position at which friction levels and offsets hold.
+    ``origin_m`` is the position at which friction levels and offsets hold; ``rig`` is what lies
+    between the part and the sensors, None where it is not known.
     """
 
     motion: MotionKind
@@ -47,6 +49,7 @@ class RunSettings:
     lowpass_hz: float | None = None
     steps: int = 1
     origin_m: float = 0.0
+    rig: RigFile | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +61,12 @@ class Rows:
     even: bool
     lowpass_hz: float | None
 
+    @property
+    def driving_force_n(self) -> Array:
+        """All that drives the part, in N: the force, and the known one outside."""
+        force: Array = self.columns[3] + self.columns[9]
+        return force
+
 
 def measured_rows(log: Log, settings: RunSettings) -> Rows:
     """Derive what the core asks of each row; nothing is resampled.
@@ -66,6 +75,9 @@ def measured_rows(log: Log, settings: RunSettings) -> Rows:
     positions would jump by more than the speed over which friction changes.
     """
     log.check_increasing()
+    if settings.rig is not None:
+        check_rig(settings.rig, settings.motion)
+        log = settings.rig.at_part(log)
     t_s, x, force = log.t_s, log.position_m, log.force_n
     steps = np.diff(t_s)
     even = bool(np.all(np.abs(steps / np.median(steps) - 1.0) <= SPACING_TOLERANCE))
@@ -89,7 +101,22 @@ def measured_rows(log: Log, settings: RunSettings) -> Rows:
     rate = np.gradient(target, t_s)
     columns = [x - origin, velocity, acceleration, force, target - origin, rate]
     columns += [np.append(steps, steps[-1]), np.append(np.diff(path) / steps, 0.0), held]
+    columns += [log.driving_force_n - force, t_s - t_s[0]]
     return Rows(log, np.array(columns), even, lowpass_hz)
+
+
+def check_rig(rig: RigFile, motion: MotionKind) -> None:
+    """Raise `LogError` for a rig that cannot be taken off a kind of motion."""
+    if motion == "closed_loop" and rig.stiffness_n_per_m is not None:
+        raise LogError(
+            "rig: stiffness_n_per_m cannot be taken off motion 'closed_loop', whose controller "
+            "sees the drive; use motion 'imposed' or 'free', or leave it out of the rig file"
+        )
+    if motion != "imposed" and rig.mass_kg > 0.0:
+        raise LogError(
+            f"rig: mass_kg is part of the mass that motion {motion!r} finds; leave it out of the "
+            "rig file and take it off the result, or use motion 'imposed'"
+        )
 
 
 def segments_of(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from breakaway.base.arguments import check_arguments
 from breakaway.base.one_line import OneLine, counted
 from breakaway.base.text import shown
 from breakaway.errors import LogError
+from breakaway.measure.identification.faults.fault import Fault
 from breakaway.measure.identification.laws import Law
 from breakaway.measure.identification.output_error import Problem, Progress
 from breakaway.measure.identification.prediction import Prediction, predict_rows
@@ -23,6 +24,7 @@ from breakaway.measure.identification.record import (
     Span,
     measured_rows,
 )
+from breakaway.measure.identification.rig_intervals import profile_with_rig, spread_by_rig
 from breakaway.measure.identification.settings import at_least_one, check_seed, known
 from breakaway.measure.identification.uncertainty import (
     Covariance,
@@ -39,7 +41,9 @@ from breakaway.measure.logs.log import Array, Log
 class Identification(OneLine):
     """A joint as one log tells it.
 
-    ``estimates`` are the parameters that were fitted, ``fixed`` those that were held.
+    ``estimates`` are the parameters that were fitted, ``fixed`` those that were held. ``combined``
+    are sums that the log tells although it does not tell their parts, such as
+    ``coulomb_plus_offset_n`` where the part slides only one way.
     ``converged`` is whether the best start was done, ``complete`` whether no Ctrl-C cut the fit
     short: what is given then is the best so far.
     """
@@ -50,6 +54,7 @@ class Identification(OneLine):
     spans: tuple[Span, ...]
     excitation: Excitation
     estimates: tuple[Estimate, ...]
+    combined: tuple[Estimate, ...]
     fixed: Mapping[str, float]
     rms_error: float
     relative_error_percent: float
@@ -57,6 +62,7 @@ class Identification(OneLine):
     effective_rows: float
     condition_number: float
     verdicts: tuple[Verdict, ...]
+    faults: tuple[Fault, ...]
     notes: tuple[str, ...]
     converged: bool
     complete: bool
@@ -154,8 +160,9 @@ class Identification(OneLine):
                     "fixed={'mass_kg': ...}"
                 )
         rows = measured_rows(self.log if log is None else log, settings)
-        numbers = self.internals.problem.layout.numbers(self.internals.best)
-        return predict_rows(rows, spans, self.law, settings, numbers)
+        layout, best = self.internals.problem.layout, self.internals.best
+        numbers, delay_s = layout.numbers(best), layout.delay_s(best)
+        return predict_rows(rows, spans, self.law, settings, numbers, delay_s=delay_s)
 
     def profile(self, name: str) -> Profile:
         """Compute the profile likelihood of a parameter.
@@ -176,7 +183,8 @@ class Identification(OneLine):
         place = self._place(name)
         error = math.sqrt(inner.covariance.matrix[place, place])
         weight = inner.covariance.weight
-        return profile(inner.problem, inner.best, inner.bounds, place, error, weight)
+        found = profile(inner.problem, inner.best, inner.bounds, place, error, weight)
+        return profile_with_rig(found, self[name].value, self.settings.rig)
 
     def posterior(
         self, samples: int = 10_000, *, seed: int = 0, progress: Progress | None = None
@@ -206,7 +214,7 @@ class Identification(OneLine):
         error = np.sqrt(np.diag(inner.covariance.matrix))
         spread = np.where(np.isfinite(error), np.minimum(error, 0.1 * (high - low)), 0.0)
         spread = np.maximum(spread, 1e-6 * (high - low))
-        return posterior(
+        found = posterior(
             inner.problem,
             inner.best,
             spread,
@@ -216,6 +224,7 @@ class Identification(OneLine):
             seed,
             progress,
         )
+        return replace(found, samples=spread_by_rig(found.samples, self.settings.rig, seed))
 
     def draws(self, samples: int, *, seed: int = 0) -> dict[str, Array]:
         """Draw parameters from the normal distribution that the covariance gives.
@@ -247,9 +256,10 @@ class Identification(OneLine):
             center, matrix, samples, check_valid="ignore", method="svd"
         )
         drawn = {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
-        return {
+        mirrored = {
             one.name: np.abs(drawn[one.name]) if one.may_vanish else drawn[one.name] for one in free
         }
+        return spread_by_rig(mirrored, self.settings.rig, seed)
 
     def _place(self, name: str) -> int:
         names = [one.name for one in self.estimates]
@@ -276,8 +286,10 @@ def as_dict(found: Identification) -> dict[str, Any]:
         "asymmetric": found.law.asymmetric,
         "position_dependent": found.law.position_dependent,
         "motion": found.settings.motion,
+        "rig": None if found.settings.rig is None else found.settings.rig.model_dump(),
         "excitation": vars(found.excitation),
         "estimates": [vars(one) for one in found.estimates],
+        "combined": [vars(one) for one in found.combined],
         "fixed": dict(found.fixed),
         "channel": found.channel,
         "rms_error": found.rms_error,
@@ -287,6 +299,7 @@ def as_dict(found: Identification) -> dict[str, Any]:
         "bic": found.bic,
         "condition_number": found.condition_number,
         "verdicts": [vars(one) for one in found.verdicts],
+        "faults": [vars(one) for one in found.faults],
         "notes": list(found.notes),
         "converged": found.converged,
         "complete": found.complete,

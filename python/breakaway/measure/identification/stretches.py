@@ -62,8 +62,32 @@ class Stretches:
     seen_from: int
     resolution_m: float
     rest_speed_m_per_s: float
+    min_slip_m: float
     window_s: float
     stretches: tuple[Stretch, ...]
+
+    def starts(self) -> tuple[Stretch, ...]:
+        """Return the motions that start from a rest that the log shows."""
+        return tuple(
+            after
+            for before, after in pairwise(self.stretches)
+            if before.direction == 0 and self.shows_rest(self.rest_since(before), after.first)
+        )
+
+    def rest_since(self, rest: Stretch) -> int:
+        """Return the first sample of a rest after the last gap over which the part moved."""
+        return max([rest.first, *(gap + 1 for gap in self.jumps(rest.first, rest.last))])
+
+    def shows_rest(self, first: int, move: int) -> bool:
+        """Whether a rest from ``first`` to ``move`` was recorded for as long as a speed needs."""
+        known = np.isfinite(self.speed_m_per_s[first:move]).any()
+        return bool(known and self.seen_s(first, move) >= self.window_s)
+
+    def seen_s(self, first: int, last: int) -> float:
+        """Return the time from one sample to another without that of the gaps."""
+        inside = self.gaps[(self.gaps >= first) & (self.gaps < last)]
+        lost = self.t_s[inside + 1] - self.t_s[inside]
+        return float(self.t_s[last] - self.t_s[first] - lost.sum())
 
     def jumps(self, first: int, last: int) -> list[int]:
         """Return the gaps from ``first`` to ``last`` over which a part that rests moved."""
@@ -74,7 +98,7 @@ class Stretches:
         """Whether the part is elsewhere after a gap than a part at rest could be."""
         way = abs(self.position_m[gap + 1] - self.position_m[gap])
         free = self.rest_speed_m_per_s * (self.t_s[gap + 1] - self.t_s[gap])
-        return bool(way > max(RESOLVED * self.resolution_m, free))
+        return bool(way > max(RESOLVED * self.resolution_m, min(free, self.min_slip_m)))
 
 
 def find_stretches(
@@ -151,6 +175,7 @@ def find_stretches(
         seen_from=int(known[0]),
         resolution_m=resolution,
         rest_speed_m_per_s=float(limit),
+        min_slip_m=min_slip_m,
         window_s=2 * half * float(np.median(steps)),
         stretches=tuple(stretches),
     )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import chi2, norm
+from scipy.stats import t as student
 
 from breakaway.base.one_line import OneLine, counted
 from breakaway.errors import LogError
@@ -16,6 +17,9 @@ from breakaway.measure.logs.log import Array
 
 LEVEL = 0.95
 """Confidence of all intervals."""
+
+HALF_WIDTH = float(norm.ppf(0.5 + 0.5 * LEVEL))
+"""Half an interval, in standard errors."""
 
 LONGEST_WINDOW = 0.1
 """Longest window of correlated residuals, as a share of the record."""
@@ -26,6 +30,9 @@ NOT_IDENTIFIABLE = 0.5
 NOT_TOLD_FROM_0 = 0.25
 """Standard error, as a share of its value, from which a parameter that may be 0 counts so too."""
 
+
+FEWEST_EVENTS = 3
+"""Fewer events than this count as so many."""
 
 SINGULAR = 1e-7
 """Singular value, relative to the largest, below which parameters cannot be told apart."""
@@ -118,9 +125,30 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
     return Covariance(matrix, window, weight, condition)
 
 
+def few_events(known: Covariance, events: Mapping[int, int]) -> Covariance:
+    """Return a covariance that allows for parameters which show in a few events only.
+
+    ::
+
+        C_ij <- f_i f_j C_ij        f² = G / (G - 1) (t / z)²
+
+    G is the number of events, at least 3, t and z the quantiles of 97.5 % of Student's
+    distribution with G - 1 degrees of freedom and of the normal distribution (Cameron, Gelbach and
+    Miller, Review of Economics and Statistics 90(3), 2008).
+
+    ``events`` maps the place of a parameter to its number of events.
+    """
+    factor = np.ones(len(known.matrix))
+    for place, count in events.items():
+        count = max(count, FEWEST_EVENTS)
+        factor[place] = student.ppf(0.5 + 0.5 * LEVEL, count - 1) / HALF_WIDTH
+        factor[place] *= np.sqrt(count / (count - 1.0))
+    return replace(known, matrix=known.matrix * np.outer(factor, factor))
+
+
 def interval(problem: Problem, internal: Array, place: int, error: float) -> tuple[float, float]:
     """Return the interval of a parameter, from the standard error of the internal one."""
-    half = float(norm.ppf(0.5 + 0.5 * LEVEL)) * error
+    half = HALF_WIDTH * error
     parameter = problem.layout.free[place]
     with np.errstate(over="ignore"):
         ends = parameter.external(np.array([internal[place] - half, internal[place] + half]))

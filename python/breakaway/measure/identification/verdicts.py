@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +12,14 @@ from numpy.typing import NDArray
 
 from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.identification.laws import Law
-from breakaway.measure.identification.record import Rows, RunSettings
+from breakaway.measure.identification.record import MotionKind, Rows, RunSettings
+from breakaway.measure.identification.stretches import find_stretches
+from breakaway.measure.identification.turns import (
+    STILL,
+    broke_away,
+    find_turns,
+    stick_slip,
+)
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
 
@@ -59,12 +67,23 @@ class Excitation:
     reversals : int
         Changes of direction.
     rests : int
-        Rests of at least 10 rows that end in motion.
+        Rests that end in motion, as `breakaway.find_breakaway_events` finds them.
     presliding_m, noise_m : float
         Deflection of the joint before it slides, as far as the force and the motion show it, and
         the noise of the position.
     both_directions : bool
-        Whether at least 2 % of the moving rows go either way.
+        Whether at least 2 % of the moving rows go either way, and the part slides both ways.
+    direction : int
+        1 or -1 where nearly all rows that move go one way, else 0.
+    broke_away : bool
+        Whether the force levels off anywhere: below breakaway it goes on rising with the way.
+    held_n : float
+        Half the range of the force; a joint that never broke away held at least that.
+    resting_n : float
+        Smallest force in the direction of motion while the part stands still, infinite if it never
+        does.
+    slips, slip_rows : int
+        Slips of a part that sticks in between, and the median rows of one; 0 without stick-slip.
 
     """
 
@@ -75,12 +94,19 @@ class Excitation:
     presliding_m: float
     noise_m: float
     both_directions: bool
+    direction: int
+    broke_away: bool
+    held_n: float
+    resting_n: float
+    slips: int
+    slip_rows: int
 
     def __str__(self) -> str:
+        never = "" if self.broke_away else f", never broke away under {self.held_n:.3g} N"
         return (
             f"excited: {self.slow_speed_m_per_s:.3g} to {self.fast_speed_m_per_s:.3g} m/s, "
             f"{self.reversals} reversals, {self.rests} rests that end in motion, presliding of "
-            f"{self.presliding_m:.2g} m against {self.noise_m:.2g} m of noise"
+            f"{self.presliding_m:.2g} m against {self.noise_m:.2g} m of noise{never}"
         )
 
     @property
@@ -99,9 +125,12 @@ class Verdict:
     remedy: str = ""
 
 
-def excitation(rows: Rows, places: Places) -> Excitation:
-    """Measure what a log excites, in the rows at ``places``."""
-    x, v, _, force = rows.columns[:4, places]
+def excitation(rows: Rows, places: Places, mass_kg: float = 0.0) -> Excitation:
+    """Measure what a log excites, in the rows at ``places``.
+
+    Whether the joint slides is judged by the force without the inertia of ``mass_kg``.
+    """
+    x, v, force = *rows.columns[:2, places], rows.driving_force_n[places]
     noise = noise_floor(rows.log, "position_m")
     noise_m = max(noise.white, noise.quantization)
     speed = np.abs(v)
@@ -109,23 +138,35 @@ def excitation(rows: Rows, places: Places) -> Excitation:
     moving = speed > MOVING * top
     sign = np.sign(v[moving])
     slow, fast = (float(q) for q in np.quantile(speed[moving], [0.05, 0.95]))
+    force_noise = noise_floor(rows.log, "force_n")
+    noise_n = max(force_noise.white, force_noise.quantization)
+    friction = force - mass_kg * rows.columns[2, places]
+    slides = broke_away(find_turns(x, v), friction, noise_m, noise_n)
+    both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
+    both = both and (slides is None or slides[0] == slides[1])
+    direction = 0 if both else int(np.sign(np.median(sign)))
+    slips, slip_rows = stick_slip(x, v, force)
+    still = speed < STILL * top
     return Excitation(
         slow_speed_m_per_s=slow,
         fast_speed_m_per_s=fast,
         reversals=int(np.count_nonzero(np.diff(sign))),
-        rests=_rests(moving),
+        rests=_rests(rows, places),
         presliding_m=_presliding(x, v, force, top),
         noise_m=noise_m,
-        both_directions=bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE),
+        both_directions=both,
+        direction=direction,
+        broke_away=slides is None or any(slides),
+        held_n=0.5 * float(np.ptp(np.quantile(force, [0.001, 0.999]))),
+        resting_n=float(np.min(direction * force[still])) if still.any() else math.inf,
+        slips=slips,
+        slip_rows=slip_rows,
     )
 
 
-def _rests(moving: Array) -> int:
-    edges = np.flatnonzero(np.diff(moving.astype(int)))
-    starts = np.concatenate([[0], edges + 1])
-    lengths = np.diff(np.concatenate([starts, [len(moving)]]))
-    resting = ~moving[starts]
-    return int(np.sum(resting[:-1] & (lengths[:-1] >= 10)))
+def _rests(rows: Rows, places: Places) -> int:
+    starts = [motion.first for motion in find_stretches(rows.log).starts()]
+    return int(np.count_nonzero(np.isin(starts, places)))
 
 
 def _presliding(x: Array, v: Array, force: Array, top: float) -> float:
@@ -171,14 +212,24 @@ _LEFT_OUT = {
 }
 
 
+def _remedy(name: str, because: str) -> str:
+    """Return the experiment that would tell a parameter."""
+    for words, remedy in _REMEDIES_BY_REASON.items():
+        if words in because:
+            return remedy
+    return _REMEDIES.get(name, _MORE)
+
+
 def _by_error(one: Estimate, found: Mapping[str, Estimate]) -> Verdict:
     ratio = found.get("stiction_ratio")
     if one.name == "stribeck_velocity_m_per_s" and ratio and ratio.low < 1.0 < ratio.high:
         because = "F_s / F_c is not distinct from 1, so it has no effect"
         return Verdict(one.name, False, because, _SPEEDS)
+    if one.identifiable and one.remark:
+        return Verdict(one.name, True, f"at least {one.low:.4g}: {one.remark}")
     if one.identifiable:
         return Verdict(one.name, True, f"95 % interval {one.low:.4g} to {one.high:.4g}")
-    return Verdict(one.name, False, one.remark, _REMEDIES.get(one.name, _MORE))
+    return Verdict(one.name, False, one.remark, _remedy(one.name, one.remark))
 
 
 _MORE = "record for longer, with more reversals and more speeds"
@@ -200,6 +251,12 @@ _REMEDIES = {
     "elastic_share": "load the joint slowly back and forth up to breakaway",
     "mass_kg": "accelerate harder, or weigh the part and fix the mass (`fixed`, --fix)",
 }
+_REMEDIES_BY_REASON = {
+    "only one way": "let the part slide both ways, or fix the offset (`fixed`, --fix)",
+    "never": "load the joint until it slides, in both directions",
+    "stick-slip": "pull faster or through a stiffer drive, until the part slides steadily; "
+    "`breakaway events` tells the force at which each slip began",
+}
 
 
 def unexcited(
@@ -214,7 +271,7 @@ def unexcited(
 
     def hold(name: str, value: float, because: str) -> None:
         if name in names:
-            remedy = _REMEDIES.get(name, _MORE)
+            remedy = _remedy(name, because)
             verdict = Verdict(name, False, f"held at {value:g}: {because}", remedy)
             out[name] = (value, verdict)
 
@@ -232,13 +289,53 @@ def unexcited(
                 hold(name, 0.0, speeds)
         if settings.motion == "imposed":
             hold("damping_n_s_per_m", 0.0, speeds)
+    if not shown.broke_away and settings.motion == "imposed":
+        hold("stiction_ratio", 1.0, "the part never broke away")
+        hold("stribeck_velocity_m_per_s", 1.0, "the part never broke away")
+        for name in names:
+            if name.startswith("viscous"):
+                hold(name, 0.0, "the part never slid")
     if not shown.both_directions:
-        hold("offset_n", 0.0, "the part slides only one way, so an offset looks like friction")
+        for name in ("offset_n", "offset_1_n"):
+            hold(name, 0.0, "the part slides only one way, so an offset looks like friction")
     if shown.presliding_m < PRESLIDING_QUANTA * shown.noise_m and settings.motion == "imposed":
         depth = f"presliding is {shown.presliding_m:.2g} m, the noise {shown.noise_m:.2g} m"
         hold("elastic_share", 0.5, depth)
         hold("damping_n_s_per_m", 0.0, depth)
     return out
+
+
+def untold(
+    names: Sequence[str], shown: Excitation, motion: MotionKind, held: Sequence[str]
+) -> dict[str, str]:
+    """Return which fitted parameters a log cannot tell by the way it moves, and why."""
+    out: dict[str, str] = {}
+    if motion != "imposed":
+        return out
+    if not shown.both_directions and {"offset_n", "offset_1_n"} & set(held):
+        word = "plus" if shown.direction > 0 else "minus"
+        sum_only = f"the part slides only one way: only coulomb {word} offset is told"
+        out = {"coulomb_n": sum_only, "stiction_ratio": sum_only}
+        load = "the part slides only one way, and how far its bristle was loaded is not known"
+        out |= dict.fromkeys(("stiffness_n_per_m", "damping_n_s_per_m", "elastic_share"), load)
+    if not shown.broke_away:
+        bound = f"the part never broke away; it held at least {shown.held_n:.3g} N"
+        levels = [name for name in names if name.startswith(("coulomb", "stiction"))]
+        out |= dict.fromkeys(levels, bound)
+        rest = "the part never broke away, so a bristle that is loaded looks like an offset"
+        out |= {name: rest for name in names if name.startswith("offset")}
+        loss = "below breakaway, friction that slips in part looks like a damper"
+        out["damping_n_s_per_m"] = loss
+    if shown.slips:
+        slips = (
+            f"stick-slip: {shown.slips} slips of about {shown.slip_rows} rows, in which force and "
+            "motion follow from each other; inertia and friction look alike"
+        )
+        out |= dict.fromkeys(names, slips)
+    if "backlash_m" in names:
+        free_travel = "each turn begins with free travel, which hides how the bristle is loaded"
+        out |= dict.fromkeys(("stiffness_n_per_m", "damping_n_s_per_m"), free_travel)
+    return {name: because for name, because in out.items() if name in names}
 
 
 def stiction_peak(found: Mapping[str, Estimate], verdict: Sequence[Verdict]) -> str:

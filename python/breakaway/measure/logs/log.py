@@ -47,7 +47,8 @@ class Log(OneLine):
     velocity_m_per_s : array of shape (n,), optional
         Measured velocity in m/s.
     channels : mapping of str to array of shape (n,) or Channel, optional
-        Further channels by names that end with their unit, such as ``pressure_pa``. A `Channel`
+        Further channels by names that end with their unit, such as ``pressure_pa``;
+        ``outside_force_n`` is a known force on the part beside ``force_n``. A `Channel`
         keeps its stamps unless ``t_s`` is given, so `dataclasses.replace` changes a log.
     source : Path, optional
         The file that the log was read from.
@@ -226,6 +227,20 @@ class Log(OneLine):
     def velocity_m_per_s(self) -> Array | None:
         """Measured velocity in m/s, or None."""
         return self._common("velocity_m_per_s") if "velocity_m_per_s" in self.channels else None
+
+    @property
+    def outside_force_n(self) -> Array | None:
+        """Known force on the part beside ``force_n`` in N, such as pulses added to a drive, or None.
+
+        It is positive where it drives the position up.
+        """
+        return self._common("outside_force_n") if "outside_force_n" in self.channels else None
+
+    @property
+    def driving_force_n(self) -> Array:
+        """All that drives the part in N: ``force_n``, with ``outside_force_n`` where there is one."""
+        outside = self.outside_force_n
+        return self.force_n if outside is None else self.force_n + outside
 
     @property
     def rows(self) -> int:

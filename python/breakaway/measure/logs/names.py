@@ -22,6 +22,7 @@ WORDS = {
     "f": "force_n",
     "force": "force_n",
     "friction_force": "force_n",
+    "outside_force": "outside_force_n",
     "friction": "friction_n",
     "normal_force": "normal_force_n",
     "ref": "reference_m",

@@ -18,6 +18,7 @@ from breakaway.base.output import write_atomically
 from breakaway.drawing.style import save_figure, scaled
 from breakaway.errors import LogError
 from breakaway.measure.identification.comparison import ComparedLaw
+from breakaway.measure.identification.curve import peak_in_words
 from breakaway.measure.identification.events import BreakawayReport
 from breakaway.measure.identification.prediction import Prediction
 from breakaway.measure.identification.result import Identification
@@ -256,13 +257,15 @@ def _parameters(found: Identification, profiles: Sequence[Profile]) -> list[dict
     profiled = {one.name: one for one in profiles}
     rows = [
         _parameter(one, because.get(one.name, ""), profiled.get(one.name))
-        for one in found.estimates
+        for one in (*found.estimates, *found.combined)
     ]
     return rows + [_held(name, value) for name, value in found.fixed.items()]
 
 
 def _parameter(one: Estimate, because: str, profile: Profile | None) -> dict[str, str]:
-    factor, shown = scaled([one.value], unit_of(one.name).symbol)
+    ends = [] if profile is None else [profile.low, profile.high]
+    sizes = [one.value, one.standard_error, one.low, one.high, *ends]
+    factor, shown = scaled(sizes, unit_of(one.name).symbol)
     value, error = uncertain(one.value * factor, float(one.standard_error) * factor)
     told = float(one.standard_error) * factor if one.identifiable else 0.0
     return {
@@ -321,7 +324,7 @@ def _peak(found: Identification) -> str:
     if not any(one.parameter == "stiction_ratio" for one in found.verdicts):
         held = Verdict("stiction_ratio", False, "F_s / F_c was held")
         return _sentence(stiction_peak({}, [held]))
-    return _sentence(stiction_peak({one.name: one for one in found.estimates}, found.verdicts))
+    return _sentence(peak_in_words(found))
 
 
 def _sentence(text: str) -> str:
@@ -381,6 +384,8 @@ def _settings(found: Identification, posterior: Posterior | None) -> Iterator[tu
     yield "motion", f"{run.motion.replace('_', ' ')}: simulated {MOTION_WORDS[run.motion]}"
     if run.controller is not None:
         yield "controller", _flat(run.controller.model_dump())
+    if run.rig is not None:
+        yield "rig", _flat(run.rig.model_dump(exclude={"notes"}, exclude_defaults=True))
     if run.force_limit_n is not None:
         yield "force limit", f"{run.force_limit_n:g} N"
     yield "spans that were fitted", ", ".join(f"{a:.6g} s to {b:.6g} s" for a, b in found.spans)
