@@ -40,7 +40,8 @@ def measured_friction(found: Identification) -> FrictionPath:
 
     """
     rows, places = fitted_rows(found)
-    return _path(found, rows.columns[9:11, places], *rows.columns[:4, places])
+    x, v, a, force = rows.columns[:4, places]
+    return _path(found, rows.columns[9:11, places], x, v, a, force)
 
 
 def simulated_friction(found: Identification) -> FrictionPath:
@@ -58,14 +59,16 @@ def simulated_friction(found: Identification) -> FrictionPath:
     rows, places = fitted_rows(found)
     fit = found.fit
     if found.settings.motion == "imposed":
-        return _path(found, rows.columns[9:11, places], *rows.columns[:3, places], fit.force_n)
+        x, v, a = rows.columns[:3, places]
+        return _path(found, rows.columns[9:11, places], x, v, a, fit.force_n)
     settings = RunSettings("imposed", lowpass_hz=rows.lowpass_hz, origin_m=found.settings.origin_m)
     parts = []
     for segment in range(int(fit.segment[-1]) + 1):
         own = fit.segment == segment
         log = Log(t_s=fit.t_s[own], position_m=fit.position_m[own], force_n=fit.force_n[own])
         parts.append(measured_rows(log, settings).columns[:4])
-    return _path(found, rows.columns[9:11, places], *np.concatenate(parts, axis=1))
+    x, v, a, force = np.concatenate(parts, axis=1)
+    return _path(found, rows.columns[9:11, places], x, v, a, force)
 
 
 def _path(

@@ -227,7 +227,8 @@ def identify(
         best, agreeing, complete = minimize_all(
             asked.problem, drawn, asked.bounds, loss, MOST_EVALUATIONS, progress
         )
-        late = find_delay(log, chosen, settings, asked.problem.layout.values(best.internal))
+        values = asked.problem.layout.values(best.internal)
+        late = find_delay(log, chosen, settings, asked.excitation, values)
         faults = faults if late is None else (*faults, late.fault)
         if late and motion != "closed_loop" and "delay_s" not in (*free, *(fixed or {})):
             asked = with_delay(log, chosen, settings, repeats, asked, late, free, best.internal)

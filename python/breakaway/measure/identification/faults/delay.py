@@ -17,7 +17,7 @@ from breakaway.measure.identification.laws import Law, LawName
 from breakaway.measure.identification.output_error import THINNED_ROWS, minimize
 from breakaway.measure.identification.record import RunSettings, Span, measured_rows
 from breakaway.measure.identification.uncertainty import covariance
-from breakaway.measure.identification.verdicts import Verdict
+from breakaway.measure.identification.verdicts import Excitation, Verdict
 from breakaway.measure.logs.log import Array, Log
 
 LAWS: tuple[LawName, ...] = ("lugre", "elasto_plastic")
@@ -33,8 +33,11 @@ CHANCE = 0.05
 AS_GOOD = 1.5
 """A law whose squared error is at most so many times the best one's has to show the delay too."""
 
-BETTER = 2.0
-"""Log likelihood by which damping has to beat the delay to stand for it."""
+BETTER = 8.0
+"""Deviance by which delay or damping has to explain a log better than the other: odds of 50 to 1."""
+
+USUAL = 0.8
+"""Largest force of a usual damper at the fastest sliding, over the Coulomb friction."""
 
 EVALUATIONS = 60
 ONE_CLOCK = "record position and force by one clock, and filter them alike"
@@ -65,7 +68,7 @@ class Late:
 
 
 def find_delay(
-    log: Log, law: Law, settings: RunSettings, values: Mapping[str, float]
+    log: Log, law: Law, settings: RunSettings, shown: Excitation, values: Mapping[str, float]
 ) -> Late | None:
     """Fit the delay under two laws, in place of the damping, and see whether it is needed.
 
@@ -81,12 +84,14 @@ def find_delay(
         The law that was fitted, for its options.
     settings : RunSettings
         How it was run.
+    shown : Excitation
+        What the log excites: a part that never slides tells no delay from what a joint loses.
     values : mapping of str to float
         What was found, near which the fits start.
 
     """
     imposed = replace(settings, motion="imposed", controller=None, steps=4)
-    if turns(measured_rows(log, imposed)) < FEWEST_TURNS:
+    if not shown.broke_away or turns(measured_rows(log, imposed)) < FEWEST_TURNS:
         return None
     try:
         fits = [_late(log, replace(law, name=name), imposed, values) for name in LAWS]
@@ -96,7 +101,7 @@ def find_delay(
     shows = [one.delay_s for one in fits if one.squares <= AS_GOOD * best.squares]
     least = SHARE_OF_ROW / log.sample_rate_hz
     certain = best.delay_s > float(norm.isf(CHANCE)) * best.error_s
-    if not certain or min(shows) < least or _is_damping(log, best, imposed):
+    if not certain or min(shows) < least or _is_damping(log, best, imposed, shown, values):
         return None
     good = tuple(one.law.name for one in fits if one.squares <= AS_GOOD * best.squares)
     return replace(best, laws=good)
@@ -140,11 +145,23 @@ def _late(log: Log, law: Law, settings: RunSettings, near: Mapping[str, float]) 
     return _fitted(log, law, settings, start, held, ("delay_s",))
 
 
-def _is_damping(log: Log, best: Late, settings: RunSettings) -> bool:
+def _is_damping(
+    log: Log, best: Late, settings: RunSettings, shown: Excitation, values: Mapping[str, float]
+) -> bool:
+    """Whether a damper stands for the delay: by the log, else where a joint could have such a one."""
     damping = best.delay_s * best.values["stiffness_n_per_m"]
-    start = {**best.values, "damping_n_s_per_m": damping}
+    start = {**best.values, "damping_n_s_per_m": damping, **values}
     damped = _fitted(log, best.law, settings, start, {}, ("damping_n_s_per_m",))
-    return best.rows * float(np.log(best.squares / damped.squares)) > BETTER
+    gain = best.rows * float(np.log(best.squares / damped.squares))
+    return gain > BETTER or (gain > -BETTER and _is_usual(damped.values, shown))
+
+
+def _is_usual(values: Mapping[str, float], shown: Excitation) -> bool:
+    """Whether a joint could have this damper: it resists less than sliding, or is undercritical."""
+    damping, mass = values["damping_n_s_per_m"], values["mass_kg"]
+    coulomb = max(value for name, value in values.items() if name.startswith("coulomb"))
+    critical = 2.0 * float(np.sqrt(values["stiffness_n_per_m"] * mass))
+    return damping * shown.fast_speed_m_per_s < USUAL * coulomb or damping < critical
 
 
 def _fitted(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.identification.record import Rows
@@ -34,7 +35,7 @@ class Reference:
     """Columns (n, k) of length 1 that friction and inertia are sums of; ``joint`` are friction's."""
 
     columns: Array
-    joint: Array
+    joint: NDArray[np.bool_]
 
     def friction(self, force: Array) -> Array:
         """Return the share of the force that friction takes."""

@@ -56,10 +56,13 @@ def leave_out_spikes(log: Log) -> tuple[Log, tuple[Fault, ...]]:
         faults.append(_named(log, name, places))
     if not faults:
         return log, ()
-    notes = [f"{one.message}" for one in faults]
-    cleaned = replace(log, **values)
-    for note in notes:
-        cleaned = cleaned.noted(note)
+    cleaned = replace(
+        log,
+        position_m=values.get("position_m", log.position_m),
+        force_n=values.get("force_n", log.force_n),
+    )
+    for fault in faults:
+        cleaned = cleaned.noted(str(fault))
     return cleaned, tuple(faults)
 
 
@@ -102,7 +105,8 @@ def spikes(log: Log, name: str) -> NDArray[np.intp]:
     found = np.flatnonzero(stands_out & (apart < APART * height))
     low, high = np.quantile(values, RANGE)
     outside = np.maximum(low - values[found], values[found] - high) > BEYOND * (high - low)
-    return found[outside | _straight(values, found, height[found])]
+    kept: NDArray[np.intp] = found[outside | _straight(values, found, height[found])]
+    return kept
 
 
 def _straight(values: Array, places: NDArray[np.intp], height: Array) -> NDArray[np.bool_]:
