@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,8 +22,9 @@ class Lag:
     """Rows whose prediction is shifted in time, segment by segment.
 
     A position that is late by τ at a row was true τ before. What is predicted from it, the force,
-    belongs τ later: the value for a row at t is the prediction at t + τ. A position that is predicted
-    is compared τ before: ``sign`` is then -1. Beyond the ends of a segment its end is taken.
+    belongs τ later: the value for a row at t is the prediction at t + τ. A position that is
+    predicted is compared τ before: ``sign`` is then -1. Beyond the ends of a segment its end is
+    taken.
     """
 
     t_s: Array
@@ -34,7 +36,7 @@ class Lag:
         """Lay out segments, first and end row of each, one behind the other."""
         lengths = np.cumsum([0, *(end - first for first, end in segments)]).tolist()
         places = np.concatenate([np.arange(first, end) for first, end in segments])
-        joined = tuple(zip(lengths[:-1], lengths[1:], strict=True))
+        joined = tuple(pairwise(lengths))
         return cls(t_s[places], joined, -1 if position else 1)
 
     def shifted(self, values: Array, delay_s: float) -> Array:

@@ -143,8 +143,8 @@ NEUTRAL: Mapping[str, float] = {
 class Layout:
     """Where parameters go among the numbers of the core, for a record of several segments.
 
-    ``variable`` says of each number which free parameter it is, if any. ``held_delay_s`` is the delay
-    of the position where it is not free: it is no number of the core.
+    ``variable`` says of each number which free parameter it is, if any. ``held_delay_s`` is the
+    delay of the position where it is not free: it is no number of the core.
     """
 
     free: tuple[Parameter, ...]

@@ -230,7 +230,7 @@ class Log(OneLine):
 
     @property
     def outside_force_n(self) -> Array | None:
-        """Known force on the part beside ``force_n`` in N, such as pulses added to a drive, or None.
+        """Known force in N on the part beside ``force_n``, such as added pulses, or None.
 
         It is positive where it drives the position up.
         """
@@ -238,7 +238,7 @@ class Log(OneLine):
 
     @property
     def driving_force_n(self) -> Array:
-        """All that drives the part in N: ``force_n``, with ``outside_force_n`` where there is one."""
+        """All that drives the part in N: ``force_n`` and any ``outside_force_n``."""
         outside = self.outside_force_n
         return self.force_n if outside is None else self.force_n + outside
 

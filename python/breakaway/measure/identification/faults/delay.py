@@ -34,7 +34,7 @@ AS_GOOD = 1.5
 """A law whose squared error is at most so many times the best one's has to show the delay too."""
 
 BETTER = 8.0
-"""Deviance by which delay or damping has to explain a log better than the other: odds of 50 to 1."""
+"""Deviance by which delay or damping has to explain a log better than the other: odds 50 to 1."""
 
 USUAL = 0.8
 """Largest force of a usual damper at the fastest sliding, over the Coulomb friction."""
@@ -45,7 +45,7 @@ ONE_CLOCK = "record position and force by one clock, and filter them alike"
 
 @dataclass(frozen=True)
 class Late:
-    """The best fit of a law with a late position; ``laws`` are those that explain the log as well."""
+    """The best fit of a law with a late position; ``laws`` explain the log as well as it does."""
 
     law: Law
     values: Mapping[str, float]
@@ -62,8 +62,8 @@ class Late:
             "delay",
             "delay_s",
             self.delay_s,
-            f"delay: the position is late by about {1e3 * self.delay_s:.2g} ms against the force, or "
-            f"the bristle is damped as if it were; {ONE_CLOCK}",
+            f"delay: the position is late by about {1e3 * self.delay_s:.2g} ms against the force, "
+            f"or the bristle is damped as if it were; {ONE_CLOCK}",
         )
 
 
@@ -148,7 +148,7 @@ def _late(log: Log, law: Law, settings: RunSettings, near: Mapping[str, float]) 
 def _is_damping(
     log: Log, best: Late, settings: RunSettings, shown: Excitation, values: Mapping[str, float]
 ) -> bool:
-    """Whether a damper stands for the delay: by the log, else where a joint could have such a one."""
+    """Whether a damper stands for the delay: by the log, else where a joint could have it."""
     damping = best.delay_s * best.values["stiffness_n_per_m"]
     start = {**best.values, "damping_n_s_per_m": damping, **values}
     damped = _fitted(log, best.law, settings, start, {}, ("damping_n_s_per_m",))
@@ -172,7 +172,7 @@ def _fitted(
     held: Mapping[str, float],
     free: tuple[str, ...],
 ) -> Late:
-    """Fit a law from a start, its mass free and the rig's other parameters as the start has them."""
+    """Fit a law from a start, its mass free, the rig's other parameters as the start has them."""
     rig = [one.name for one in RIG_PARAMETERS if one.name in start and one.name not in free]
     names = ("mass_kg", *free, *(name for name in rig if name != "delay_s"))
     asked = prepare(log, law, settings, (), held, names, start)
@@ -185,4 +185,5 @@ def _fitted(
     place = problem.layout.delay_place
     error = 0.0 if place is None else float(np.sqrt(known.matrix[place, place]))
     squares = float(residual @ residual)
-    return Late(law, values, values.get("delay_s", 0.0), error, squares, known.weight * len(residual))
+    rows = known.weight * len(residual)
+    return Late(law, values, values.get("delay_s", 0.0), error, squares, rows)

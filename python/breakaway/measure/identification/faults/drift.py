@@ -86,6 +86,6 @@ def _warms(change: float, duration_s: float) -> Fault:
         "warming",
         "warming_per_s",
         change / (1.0 - 0.5 * change) / duration_s,
-        f"warming: friction ends at {end:.0f} % of what it began with, as joints do that warm up or "
-        "run in; the levels are those of its start",
+        f"warming: friction ends at {end:.0f} % of what it began with, as joints do that warm up "
+        "or run in; the levels are those of its start",
     )

@@ -32,7 +32,7 @@ RANK = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Columns (n, k) of length 1 that friction and inertia are sums of; ``joint`` are friction's."""
+    """Columns (n, k) of length 1 that friction and inertia sum up; ``joint`` are friction's."""
 
     columns: Array
     joint: NDArray[np.bool_]
@@ -63,8 +63,8 @@ def reference(rows: Rows) -> Reference:
         F = m a + σ v + F_0 + Σ_i (w_i + Σ_j w_ij exp(-(v / v_j)²)) P_i
 
     with P_i the force of a spring that slips at a travel r_i (a stop operator): their sums are the
-    hystereses of Prandtl and Ishlinskii, which Maxwell-slip friction is, and near to which LuGre and
-    elasto-plastic friction come.
+    hystereses of Prandtl and Ishlinskii, which Maxwell-slip friction is, and near to which LuGre
+    and elasto-plastic friction come.
     """
     x, v, a = rows.columns[:3]
     noise = noise_floor(rows.log, "position_m")

@@ -1,4 +1,4 @@
-"""What a rig may do to a log besides moving the part: parameters that are 0 unless a log shows them."""
+"""What a rig may do to a log besides moving the part: 0 unless a log shows it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RIG_PARAMETERS = (
     Parameter("warming_per_s", ("warming_per_s",), False, -10.0, 10.0),
     Parameter("backlash_m", ("backlash_m",), False, 0.0, 1.0),
 )
-"""The position's delay, the force's drift, change of the levels, free travel at a turn of the force."""
+"""Delay of the position, drift of the force, change of the levels, free travel at a turn."""
 
 
 def rig_parameters(motion: MotionKind) -> tuple[Parameter, ...]:

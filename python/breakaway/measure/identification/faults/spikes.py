@@ -34,8 +34,8 @@ STRAIGHT = 0.3
 
 BEYOND = 0.5
 RANGE = (0.005, 0.995)
-"""Elsewhere, as where the part turns or starts, a spike has to leave the range of the channel, between
-these quantiles, by this share of it."""
+"""Elsewhere, as where the part turns or starts, a spike has to leave the range of the channel,
+between these quantiles, by this share of it."""
 
 SHOWN = 5
 """Times that a message names."""
@@ -44,7 +44,7 @@ CHANNELS = ("position_m", "force_n")
 
 
 def leave_out_spikes(log: Log) -> tuple[Log, tuple[Fault, ...]]:
-    """Return the log with its spikes on the line between their neighbors, and a fault per channel."""
+    """Return the log with its spikes on the line between neighbors, and a fault per channel."""
     faults, values = [], {}
     for name in CHANNELS:
         column, places = log[name], spikes(log, name)
@@ -56,13 +56,17 @@ def leave_out_spikes(log: Log) -> tuple[Log, tuple[Fault, ...]]:
         faults.append(_named(log, name, places))
     if not faults:
         return log, ()
-    cleaned = replace(
-        log,
-        position_m=values.get("position_m", log.position_m),
-        force_n=values.get("force_n", log.force_n),
+    channels = [
+        replace(channel, values=values[name]) if name in values else channel
+        for name, channel in log.channels.items()
+    ]
+    cleaned = Log.from_channels(
+        channels,
+        source=log.source,
+        sha256=log.sha256,
+        ignored_columns=log.ignored_columns,
+        history=(*log.history, *map(str, faults)),
     )
-    for fault in faults:
-        cleaned = cleaned.noted(str(fault))
     return cleaned, tuple(faults)
 
 
@@ -87,9 +91,10 @@ def spikes(log: Log, name: str) -> NDArray[np.intp]:
         d_k = x_k - (x_{k-1} + x_{k+1}) / 2
 
     White noise of deviation s gives d the deviation s √1.5. A spike exceeds its quantile for
-    `FALSE_ALARMS` in all samples, stands `ROUGHER` times out of what lies around it, and has neighbors
-    that agree: a step, an impact or a slip takes more than one sample to come and go. A breakaway may
-    take only one: where the part turns or starts, a spike has to leave the range of all others.
+    `FALSE_ALARMS` in all samples, stands `ROUGHER` times out of what lies around it, and has
+    neighbors that agree: a step, an impact or a slip takes more than one sample to come and go. A
+    breakaway may take only one: where the part turns or starts, a spike has to leave the range of
+    all others.
     """
     values = log[name]
     if len(values) < 4 * NEIGHBORS:
