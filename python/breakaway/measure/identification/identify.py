@@ -213,6 +213,7 @@ def identify(
     )
     log, faults = seen.log, seen.faults
     modeled = {} if method == "least_squares" else seen.modeled
+    like_damping = ""
     free, guesses = (*free, *modeled), {**modeled, **(guesses or {})}
     asked = prepare(log, chosen, settings, repeats, fixed or {}, free, guesses, method)
     if method == "least_squares":
@@ -229,11 +230,15 @@ def identify(
         )
         values = asked.problem.layout.values(best.internal)
         late = find_delay(log, chosen, settings, asked.excitation, values)
-        faults = faults if late is None else (*faults, late.fault)
-        if late and motion != "closed_loop" and "delay_s" not in (*free, *(fixed or {})):
-            asked = with_delay(log, chosen, settings, repeats, asked, late, free, best.internal)
-            best = minimize(asked.problem, asked.guess, asked.bounds, loss, MOST_EVALUATIONS)
-    found = _Found(log, chosen, settings, asked, loss, seed, faults)
+        stated = "delay_s" in (*free, *(fixed or {}))
+        if late and late.decided:
+            faults = (*faults, late.fault)
+            if motion != "closed_loop" and not stated:
+                asked = with_delay(log, chosen, settings, repeats, asked, late, free, best.internal)
+                best = minimize(asked.problem, asked.guess, asked.bounds, loss, MOST_EVALUATIONS)
+        elif late and not stated:
+            like_damping = late.remark
+    found = _Found(log, chosen, settings, asked, loss, seed, faults, like_damping)
     return found.result(best.internal, best.converged, complete, starts, agreeing)
 
 
@@ -282,6 +287,8 @@ class _Found:
     loss: Loss
     seed: int
     faults: tuple[Fault, ...]
+    like_damping: str
+    """What looks like a damper of the bristle, where the log does not tell it from one."""
 
     def result(
         self,
@@ -377,6 +384,9 @@ class _Found:
             else one
             for one in estimates
         ]
+        if self.like_damping and "damping_n_s_per_m" in names:
+            place = names.index("damping_n_s_per_m")
+            out[place] = _at_most(out[place], self.like_damping)
         values = {one.name: one.value for one in estimates}
         if self._goes_one_way and "coulomb_n" in values:
             place = names.index("coulomb_n")
@@ -471,6 +481,12 @@ def _robust(loss: str, residual: Array) -> Array:
     if loss == "cauchy":
         return (1.0 + z) ** -0.5
     return np.ones_like(residual)
+
+
+def _at_most(estimate: Estimate, because: str) -> Estimate:
+    """Return an estimate that may as well be 0."""
+    remark = because if estimate.identifiable else estimate.remark
+    return replace(estimate, low=0.0, identifiable=False, remark=remark)
 
 
 def _with_verdict(estimate: Estimate, judged: Sequence[Verdict]) -> Estimate:

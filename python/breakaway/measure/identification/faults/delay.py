@@ -36,16 +36,16 @@ AS_GOOD = 1.5
 BETTER = 8.0
 """Deviance by which delay or damping has to explain a log better than the other: odds 50 to 1."""
 
-USUAL = 0.8
-"""Largest force of a usual damper at the fastest sliding, over the Coulomb friction."""
-
 EVALUATIONS = 60
 ONE_CLOCK = "record position and force by one clock, and filter them alike"
 
 
 @dataclass(frozen=True)
 class Late:
-    """The best fit of a law with a late position; ``laws`` explain the log as well as it does."""
+    """The best fit of a law with a late position; ``laws`` explain the log as well as it does.
+
+    ``decided`` says whether the log tells the delay from a damper of the bristle.
+    """
 
     law: Law
     values: Mapping[str, float]
@@ -54,6 +54,7 @@ class Late:
     squares: float
     rows: float
     laws: tuple[LawName, ...] = ()
+    decided: bool = False
 
     @property
     def fault(self) -> Fault:
@@ -62,8 +63,16 @@ class Late:
             "delay",
             "delay_s",
             self.delay_s,
-            f"delay: the position is late by about {1e3 * self.delay_s:.2g} ms against the force, "
-            f"or the bristle is damped as if it were; {ONE_CLOCK}",
+            f"delay: the position is late by about {1e3 * self.delay_s:.2g} ms against the force; "
+            f"{ONE_CLOCK}",
+        )
+
+    @property
+    def remark(self) -> str:
+        """What follows for the damping where the delay is not decided."""
+        return (
+            f"a position that is late by {1e3 * self.delay_s:.2g} ms looks the same; hold delay_s "
+            "at 0 where one clock stamps position and force"
         )
 
 
@@ -74,7 +83,8 @@ def find_delay(
 
     To first order in the delay τ the elastic force of a late position is that of a bristle with the
     damper c = k_e τ, so either is sought with the other at 0. What comes after the first order, and
-    inertia and viscous friction, which the damper does not act on, tell them apart.
+    inertia and viscous friction, which the damper does not act on, may tell them apart: a delay is
+    decided where it explains the log better by `BETTER`, and none is where the damper does.
 
     Parameters
     ----------
@@ -101,10 +111,13 @@ def find_delay(
     shows = [one.delay_s for one in fits if one.squares <= AS_GOOD * best.squares]
     least = SHARE_OF_ROW / log.sample_rate_hz
     certain = best.delay_s > float(norm.isf(CHANCE)) * best.error_s
-    if not certain or min(shows) < least or _is_damping(log, best, imposed, shown, values):
+    if not certain or min(shows) < least:
+        return None
+    gain = _gain_of_damping(log, best, imposed, values)
+    if gain > BETTER:
         return None
     good = tuple(one.law.name for one in fits if one.squares <= AS_GOOD * best.squares)
-    return replace(best, laws=good)
+    return replace(best, laws=good, decided=gain < -BETTER)
 
 
 def with_delay(
@@ -145,23 +158,14 @@ def _late(log: Log, law: Law, settings: RunSettings, near: Mapping[str, float]) 
     return _fitted(log, law, settings, start, held, ("delay_s",))
 
 
-def _is_damping(
-    log: Log, best: Late, settings: RunSettings, shown: Excitation, values: Mapping[str, float]
-) -> bool:
-    """Whether a damper stands for the delay: by the log, else where a joint could have it."""
+def _gain_of_damping(
+    log: Log, best: Late, settings: RunSettings, values: Mapping[str, float]
+) -> float:
+    """Return by how much a damper explains the log better than the delay, as a deviance."""
     damping = best.delay_s * best.values["stiffness_n_per_m"]
     start = {**best.values, "damping_n_s_per_m": damping, **values}
     damped = _fitted(log, best.law, settings, start, {}, ("damping_n_s_per_m",))
-    gain = best.rows * float(np.log(best.squares / damped.squares))
-    return gain > BETTER or (gain > -BETTER and _is_usual(damped.values, shown))
-
-
-def _is_usual(values: Mapping[str, float], shown: Excitation) -> bool:
-    """Whether a joint could have this damper: it resists less than sliding, or is undercritical."""
-    damping, mass = values["damping_n_s_per_m"], values["mass_kg"]
-    coulomb = max(value for name, value in values.items() if name.startswith("coulomb"))
-    critical = 2.0 * float(np.sqrt(values["stiffness_n_per_m"] * mass))
-    return damping * shown.fast_speed_m_per_s < USUAL * coulomb or damping < critical
+    return best.rows * float(np.log(best.squares / damped.squares))
 
 
 def _fitted(
