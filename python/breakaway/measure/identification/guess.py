@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from breakaway.errors import LogError
+from breakaway.measure.identification.hysteresis import reference, thinned
 from breakaway.measure.identification.laws import Law, Layout, Parameter
 from breakaway.measure.identification.record import STEP_LIMIT, Rows, RunSettings
 from breakaway.measure.logs.derived import noise_floor
@@ -58,7 +59,7 @@ class Scales:
 
 
 def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
-    """Regress force on acceleration, speed and direction where the part moves.
+    """Regress force on speed and direction where the part moves, without its inertia.
 
     Raises
     ------
@@ -80,25 +81,22 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
         raise LogError(f"{log.name}: the force is 0 in every row; record the force on the part")
     moving = np.abs(v) > MOVING * speed
     _check_dissipation(log, force, v)
-    held = np.zeros_like(force) if mass_kg is None else mass_kg * a
-    columns = np.column_stack([a, v, np.sign(v), np.ones_like(v)])[moving]
-    if np.all(columns[:, 2] == columns[0, 2]):
-        columns = columns[:, :3]
+    columns = np.column_stack([v, np.sign(v), np.ones_like(v)])[moving]
+    if np.all(columns[:, 1] == columns[0, 1]):
+        columns = columns[:, :2]
     size = float(np.sqrt(np.mean(force**2)))
-    inertia, hidden = (mass_kg, 0.0) if mass_kg is not None else _inertia(columns, force[moving])
-    if mass_kg is not None or inertia == 0.0:
-        columns[:, 0] = 0.0
-    found = np.linalg.lstsq(columns, (force - held)[moving], rcond=None)[0]
-    found = np.append(found, 0.0)[:4]
-    coulomb = max(float(found[2]), 0.05 * size)
+    inertia, hidden = (mass_kg, 0.0) if mass_kg is not None else _inertia(rows, chosen)
+    found = np.linalg.lstsq(columns, (force - inertia * a)[moving], rcond=None)[0]
+    found = np.append(found, 0.0)[:3]
+    coulomb = max(float(found[1]), 0.05 * size)
     fallback = 0.01 * size / max(float(np.std(a)), 1e-300)
     return Scales(
         mass_kg=inertia if inertia > 0.0 else fallback,
         mass_shows=inertia > 0.0,
         hidden_mass_kg=hidden,
         coulomb_n=coulomb,
-        viscous_n_s_per_m=max(float(found[1]), 0.02 * coulomb / speed),
-        offset_n=float(found[3]),
+        viscous_n_s_per_m=max(float(found[0]), 0.02 * coulomb / speed),
+        offset_n=float(found[2]),
         force_n=size,
         speed_m_per_s=speed,
         travel_m=travel,
@@ -109,19 +107,16 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
     )
 
 
-def _inertia(columns: Array, force: Array) -> tuple[float, float]:
-    """Return the mass in kg that the regression finds, and the largest that would not show."""
-    size = float(np.sqrt(np.mean(force**2)))
-    share_kg = size / max(float(np.sqrt(np.mean(columns[:, 0] ** 2))), 1e-300)
-    found, _, rank, _ = np.linalg.lstsq(columns, force, rcond=None)
-    if rank < columns.shape[1]:
-        return 0.0, INERTIA_SHARE * share_kg
-    residual = force - columns @ found
-    spread = np.linalg.inv(columns.T @ columns)[0, 0]
-    error = INERTIA_ERRORS * float(np.sqrt(spread * float(residual @ residual) / len(force)))
-    if found[0] > max(error, INERTIA_SHARE * share_kg):
-        return float(found[0]), 0.0
-    return 0.0, min(max(float(found[0]), 0.0) + error, INERTIA_SHARE * share_kg)
+def _inertia(rows: Rows, chosen: Array) -> tuple[float, float]:
+    """Return the mass in kg that shows under any hysteresis, and the largest that would not."""
+    some = thinned(replace(rows, columns=rows.columns[:, chosen]))
+    force, a = some.driving_force_n, some.columns[2]
+    size, acceleration = (max(float(np.sqrt(np.mean(one**2))), 1e-300) for one in (force, a))
+    least = INERTIA_SHARE * size / acceleration
+    mass, error = reference(some).mass_kg(force)
+    if mass > max(INERTIA_ERRORS * error, least):
+        return mass, 0.0
+    return 0.0, min(max(mass, 0.0) + INERTIA_ERRORS * error, least)
 
 
 def _velocity_noise(rows: Rows, noise_m: float) -> float:

@@ -336,9 +336,10 @@ class _Found:
             verdicts=judged,
             faults=self.faults,
             notes=(
+                *_unfinished(complete, converged),
                 *map(str, self.faults),
                 *self._warnings(best, percent),
-                *self._notes(known, complete, converged, starts, agreeing),
+                *self._notes(known, starts, agreeing),
             ),
             converged=converged,
             complete=complete,
@@ -448,17 +449,10 @@ class _Found:
     def _notes(
         self,
         known: Covariance,
-        complete: bool,
-        converged: bool,
         starts: int,
         agreeing: int,
     ) -> list[str]:
-        notes = []
-        if not complete:
-            notes.append("stopped before it finished: these are the best parameters so far")
-        elif not converged:
-            notes.append(f"not converged within {MOST_EVALUATIONS} evaluations")
-        notes.append(str(self.asked.excitation))
+        notes = [str(self.asked.excitation)]
         if starts > 1:
             notes.append(f"{agreeing} of {starts} starts came to the same minimum")
         if known.window > 0:
@@ -469,6 +463,12 @@ class _Found:
             )
         notes += [str(finding) for finding in self.log.findings]
         return notes
+
+
+def _unfinished(complete: bool, converged: bool) -> list[str]:
+    if not complete:
+        return ["stopped before it finished: these are the best parameters so far"]
+    return [] if converged else [f"not converged within {MOST_EVALUATIONS} evaluations"]
 
 
 def _robust(loss: str, residual: Array) -> Array:

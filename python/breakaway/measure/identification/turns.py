@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.logs.log import Array
 
 Whole = NDArray[np.integer[Any]]
@@ -26,6 +27,9 @@ PLATEAU_SHARE = 0.2
 
 FEWEST_ROWS = 8
 """Fewest rows between two turns that show a plateau."""
+
+COMES_BACK = 0.2
+"""Travel one way, over that the other way, from which a part moves to and fro."""
 
 FEWEST_SLIPS = 3
 """Fewest slips that make stick-slip."""
@@ -71,6 +75,19 @@ def find_turns(x: Array, v: Array) -> Turns:
     way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
     directions = signs[np.concatenate([[0], np.flatnonzero(np.diff(signs)) + 1])]
     return Turns(directions[stretch], stretch, way - way[first], np.arange(len(v)) - first)
+
+
+def to_and_fro(x: Array, v: Array) -> int:
+    """Return how often the part turns from motion one way to motion the other way.
+
+    It is 0 where the part hardly comes back: a part that is pulled one way may swing as it slips.
+    """
+    steps = np.diff(x)
+    back, forth = float(-steps[steps < 0.0].sum()), float(steps[steps > 0.0].sum())
+    if min(back, forth) < COMES_BACK * max(back, forth):
+        return 0
+    moving = v[np.abs(v) > MOVING * float(np.quantile(np.abs(v), 0.99))]
+    return int(np.count_nonzero(np.diff(np.sign(moving))))
 
 
 def broke_away(

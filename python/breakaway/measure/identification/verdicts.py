@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.identification.laws import Law
@@ -34,6 +35,9 @@ SLIDING_SHARE = 0.02
 
 PRESLIDING_QUANTA = 5.0
 """A presliding deflection must exceed the noise of the position by this factor."""
+
+OUTLYING = 7
+"""Rows of a median of the force: up to three that stand out do not say how a joint slides."""
 
 NO_PEAK = 1.02
 """F_s / F_c whose interval ends below this is no stiction peak."""
@@ -140,7 +144,7 @@ def excitation(rows: Rows, places: Places, mass_kg: float = 0.0) -> Excitation:
     slow, fast = (float(q) for q in np.quantile(speed[moving], [0.05, 0.95]))
     force_noise = noise_floor(rows.log, "force_n")
     noise_n = max(force_noise.white, force_noise.quantization)
-    friction = force - mass_kg * rows.columns[2, places]
+    friction = median_filter(force - mass_kg * rows.columns[2, places], OUTLYING, mode="nearest")
     slides = broke_away(find_turns(x, v), friction, noise_m, noise_n)
     both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
     both = both and (slides is None or slides[0] == slides[1])

@@ -6,8 +6,9 @@ import numpy as np
 from scipy.stats import t as student
 
 from breakaway.measure.identification.faults.fault import Fault
-from breakaway.measure.identification.faults.reference import reference, thinned, turns
+from breakaway.measure.identification.hysteresis import reference, thinned
 from breakaway.measure.identification.record import Rows
+from breakaway.measure.identification.turns import to_and_fro
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
 
@@ -39,7 +40,7 @@ def find_backlash(rows: Rows) -> tuple[Fault, ...]:
     over b, and only then rises on the other side: the span about 0 takes b more than the next. Over
     the turns the excess is tested against 0 by its spread (Student's t).
     """
-    if turns(rows) < FEWEST_TURNS:
+    if to_and_fro(*rows.columns[:2]) < FEWEST_TURNS:
         return ()
     rows = thinned(rows)
     base = reference(rows)

@@ -6,16 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import norm
+from scipy.stats import norm, t
 
 from breakaway.errors import LogError
 from breakaway.measure.identification.faults.fault import Fault
-from breakaway.measure.identification.faults.reference import turns
 from breakaway.measure.identification.faults.rig import RIG_PARAMETERS
 from breakaway.measure.identification.identifiability import Prepared, prepare
 from breakaway.measure.identification.laws import Law, LawName
 from breakaway.measure.identification.output_error import THINNED_ROWS, minimize
 from breakaway.measure.identification.record import RunSettings, Span, measured_rows
+from breakaway.measure.identification.turns import to_and_fro
 from breakaway.measure.identification.uncertainty import covariance
 from breakaway.measure.identification.verdicts import Excitation, Verdict
 from breakaway.measure.logs.log import Array, Log
@@ -36,6 +36,10 @@ AS_GOOD = 1.5
 BETTER = 8.0
 """Deviance by which delay or damping has to explain a log better than the other: odds 50 to 1."""
 
+ALL_ALONG = 0.05
+"""One-sided chance that blocks of a log, one for each turn, prefer either so much where both err
+alike (Vuong, 1989): what is better at a few turns only is an error of the law."""
+
 EVALUATIONS = 60
 ONE_CLOCK = "record position and force by one clock, and filter them alike"
 
@@ -51,10 +55,16 @@ class Late:
     values: Mapping[str, float]
     delay_s: float
     error_s: float
-    squares: float
+    squares: Array
+    """Squared residual of each row."""
     rows: float
     laws: tuple[LawName, ...] = ()
     decided: bool = False
+
+    @property
+    def sum(self) -> float:
+        """Sum of the squares."""
+        return float(self.squares.sum())
 
     @property
     def fault(self) -> Fault:
@@ -101,23 +111,24 @@ def find_delay(
 
     """
     imposed = replace(settings, motion="imposed", controller=None, steps=4)
-    if not shown.broke_away or turns(measured_rows(log, imposed)) < FEWEST_TURNS:
+    blocks = to_and_fro(*measured_rows(log, imposed).columns[:2])
+    if not shown.broke_away or blocks < FEWEST_TURNS:
         return None
     try:
         fits = [_late(log, replace(law, name=name), imposed, values) for name in LAWS]
     except LogError:
         return None
-    best = min(fits, key=lambda one: one.squares)
-    shows = [one.delay_s for one in fits if one.squares <= AS_GOOD * best.squares]
+    best = min(fits, key=lambda one: one.sum)
+    shows = [one.delay_s for one in fits if one.sum <= AS_GOOD * best.sum]
     least = SHARE_OF_ROW / log.sample_rate_hz
     certain = best.delay_s > float(norm.isf(CHANCE)) * best.error_s
     if not certain or min(shows) < least:
         return None
-    gain = _gain_of_damping(log, best, imposed, values)
-    if gain > BETTER:
+    damped = _damped(log, best, imposed, values)
+    if _explains_better(damped, best, blocks):
         return None
-    good = tuple(one.law.name for one in fits if one.squares <= AS_GOOD * best.squares)
-    return replace(best, laws=good, decided=gain < -BETTER)
+    good = tuple(one.law.name for one in fits if one.sum <= AS_GOOD * best.sum)
+    return replace(best, laws=good, decided=_explains_better(best, damped, blocks))
 
 
 def with_delay(
@@ -158,14 +169,19 @@ def _late(log: Log, law: Law, settings: RunSettings, near: Mapping[str, float]) 
     return _fitted(log, law, settings, start, held, ("delay_s",))
 
 
-def _gain_of_damping(
-    log: Log, best: Late, settings: RunSettings, values: Mapping[str, float]
-) -> float:
-    """Return by how much a damper explains the log better than the delay, as a deviance."""
-    damping = best.delay_s * best.values["stiffness_n_per_m"]
-    start = {**best.values, "damping_n_s_per_m": damping, **values}
-    damped = _fitted(log, best.law, settings, start, {}, ("damping_n_s_per_m",))
-    return best.rows * float(np.log(best.squares / damped.squares))
+def _damped(log: Log, late: Late, settings: RunSettings, values: Mapping[str, float]) -> Late:
+    """Fit a damper in the delay's place."""
+    damping = late.delay_s * late.values["stiffness_n_per_m"]
+    start = {**late.values, "damping_n_s_per_m": damping, **values}
+    return _fitted(log, late.law, settings, start, {}, ("damping_n_s_per_m",))
+
+
+def _explains_better(one: Late, other: Late, blocks: int) -> bool:
+    """Whether a fit explains a log better than another, as a whole and all along."""
+    deviance = one.rows * float(np.log(other.sum / one.sum))
+    gains = [float(part.sum()) for part in np.array_split(other.squares - one.squares, blocks)]
+    error = float(np.std(gains, ddof=1)) / np.sqrt(blocks)
+    return deviance > BETTER and np.mean(gains) > float(t.isf(ALL_ALONG, blocks - 1)) * error
 
 
 def _fitted(
@@ -188,6 +204,5 @@ def _fitted(
     values = problem.layout.values(found.internal)
     place = problem.layout.delay_place
     error = 0.0 if place is None else float(np.sqrt(known.matrix[place, place]))
-    squares = float(residual @ residual)
     rows = known.weight * len(residual)
-    return Late(law, values, values.get("delay_s", 0.0), error, squares, rows)
+    return Late(law, values, values.get("delay_s", 0.0), error, residual**2, rows)

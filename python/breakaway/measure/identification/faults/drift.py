@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from breakaway.measure.identification.faults.fault import Fault
-from breakaway.measure.identification.faults.reference import reference, thinned, turns
+from breakaway.measure.identification.hysteresis import reference, thinned
 from breakaway.measure.identification.record import Rows
+from breakaway.measure.identification.turns import to_and_fro
 from breakaway.measure.identification.uncertainty import covariance
 from breakaway.measure.logs.log import Array
 
@@ -30,7 +31,7 @@ def find_drift(rows: Rows) -> tuple[Fault, ...]:
     with the standard errors of correlated residuals. A drift moves both directions alike; friction
     that warms or runs in moves them together.
     """
-    if turns(rows) < FEWEST_TURNS:
+    if to_and_fro(*rows.columns[:2]) < FEWEST_TURNS:
         return ()
     rows = thinned(rows)
     base = reference(rows)

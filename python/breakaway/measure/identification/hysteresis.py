@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from breakaway.measure.identification.guess import MOVING
 from breakaway.measure.identification.record import Rows
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
@@ -22,26 +21,42 @@ STRIBECK = (0.02, 0.06, 0.2)
 PEAKED = (0, 4, 8, 12)
 """The elements whose level may fall with speed."""
 
-COMES_BACK = 0.2
-"""Travel one way, over that the other way, from which a part moves to and fro."""
-
 MOST_ROWS = 20_000
+HIDDEN = 1e-6
+"""Share of the acceleration that friction and offset cannot stand for, below which it is hidden."""
+
 RANK = 1e-8
 """Singular value, relative to the largest, below which columns count as dependent."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Columns (n, k) of length 1 that friction and inertia sum up; ``joint`` are friction's."""
+    """Columns (n, k) of length 1 that friction and inertia are sums of.
+
+    ``joint`` are friction's; the first is the acceleration over ``acceleration_norm``.
+    """
 
     columns: Array
     joint: NDArray[np.bool_]
+    acceleration_norm: float
 
     def friction(self, force: Array) -> Array:
         """Return the share of the force that friction takes."""
         found = np.linalg.lstsq(self.columns, force, rcond=RANK)[0]
         friction: Array = self.columns[:, self.joint] @ found[self.joint]
         return friction
+
+    def mass_kg(self, force: Array) -> tuple[float, float]:
+        """Return the mass that the force shows, and its error if residuals are white, in kg."""
+        inertia, others = self.columns[:, 0], self.columns[:, 1:]
+        alone = inertia - others @ np.linalg.lstsq(others, inertia, rcond=RANK)[0]
+        shown = float(np.linalg.norm(alone))
+        if shown < HIDDEN:
+            return 0.0, np.inf
+        found = np.linalg.lstsq(self.columns, force, rcond=RANK)[0]
+        rms_n = float(np.sqrt(np.mean((force - self.columns @ found) ** 2)))
+        mass = float(alone @ force) / (shown**2 * self.acceleration_norm)
+        return mass, rms_n / (shown * self.acceleration_norm)
 
     def resisting(self, force: Array) -> Array:
         """Return the measured force without inertia, viscous friction and offset."""
@@ -77,22 +92,8 @@ def reference(rows: Rows) -> Reference:
         slow = np.exp(-((v / (share * top)) ** 2))
         parts += [slow * stops[:, i] for i in PEAKED]
     columns = np.array(parts).T
-    columns /= np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    return Reference(columns, np.arange(len(parts)) >= 3)
-
-
-def turns(rows: Rows) -> int:
-    """Return how often the part turns from motion one way to motion the other way.
-
-    It is 0 where the part hardly comes back: a part that is pulled one way may swing as it slips.
-    """
-    x, v = rows.columns[:2]
-    steps = np.diff(x)
-    back, forth = float(-steps[steps < 0.0].sum()), float(steps[steps > 0.0].sum())
-    if min(back, forth) < COMES_BACK * max(back, forth):
-        return 0
-    moving = v[np.abs(v) > MOVING * float(np.quantile(np.abs(v), 0.99))]
-    return int(np.count_nonzero(np.diff(np.sign(moving))))
+    norms = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    return Reference(columns / norms, np.arange(len(parts)) >= 3, float(norms[0]))
 
 
 def _stops(x: Array, reaches: Array) -> Array:
