@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 from dataclasses import replace
+from html import unescape
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -185,7 +186,7 @@ def test_provenance_is_complete(found, page):
         assert said in page
     assert "1 s to 2 s" in page
     for note in found.notes:
-        assert escape(note) in page
+        assert note in unescape(page)
     assert "On rows that were not fitted, 2 s to 2.999 s, the predicted force is" in page
 
 

@@ -34,6 +34,9 @@ NOT_TOLD_FROM_0 = 0.25
 FEWEST_EVENTS = 3
 """Fewer events than this count as so many."""
 
+LEAST_SLOPE = 1e-150
+"""A parameter whose slopes are so small that their squares vanish is not told."""
+
 SINGULAR = 1e-7
 """Singular value, relative to the largest, below which parameters cannot be told apart."""
 
@@ -95,7 +98,7 @@ def covariance(residual: Array, slopes: Array) -> Covariance:
     rows, count = slopes.shape
     with np.errstate(over="ignore", under="ignore"):
         size = np.linalg.norm(slopes, axis=0)
-    told = (size > 0.0) & np.isfinite(size)
+    told = (size > LEAST_SLOPE) & np.isfinite(size)
     matrix = np.zeros((count, count))
     matrix[~told, ~told] = np.inf
     window = correlation_window(residual)
