@@ -16,6 +16,7 @@ from breakaway.measure.identification.doubt import doubt, events, with_hidden_ma
 from breakaway.measure.identification.faults.delay import find_delay, with_delay
 from breakaway.measure.identification.faults.examine import examine
 from breakaway.measure.identification.faults.fault import Fault
+from breakaway.measure.identification.faults.units import find_units, plausibility
 from breakaway.measure.identification.identifiability import Prepared, prepare
 from breakaway.measure.identification.inertia_friction import identify_inertia_friction
 from breakaway.measure.identification.laws import Law, LawName, Layout, check_law
@@ -319,6 +320,9 @@ class _Found:
         size = np.linalg.norm(measured if problem.channel == "force_n" else measured - measured[0])
         percent = 100.0 * float(np.linalg.norm(errors) / size)
         judged = verdicts(estimates, self.asked.held_back, self.law, self.asked.held)
+        by_name = {one.name: one for one in estimates}
+        fast_speed = self.asked.excitation.fast_speed_m_per_s
+        faults = (*self.faults, *find_units(by_name, fast_speed))
         return Identification(
             log=self.log,
             law=self.law,
@@ -334,12 +338,13 @@ class _Found:
             effective_rows=known.weight * len(residual),
             condition_number=known.condition_number,
             verdicts=judged,
-            faults=self.faults,
+            faults=faults,
             notes=(
                 *_unfinished(complete, converged),
-                *map(str, self.faults),
+                *map(str, faults),
                 *self._warnings(best, percent),
                 *self._notes(known, starts, agreeing),
+                plausibility(by_name, fast_speed),
             ),
             converged=converged,
             complete=complete,
