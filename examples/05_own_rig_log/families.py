@@ -96,7 +96,8 @@ def presliding(truth: Truth, case: int) -> bk.Log:
     size = rng.uniform(0.2, 0.5) * truth.deflection_m
     x = 0.7 * np.sin(2.0 * np.pi * 0.7 * t_s) + 0.3 * np.sin(2.0 * np.pi * 1.9 * t_s)
     fine = replace(truth, position_quantum_m=min(truth.position_quantum_m, size / 200.0))
-    return along(fine, size * x * np.minimum(t_s, 1.0), case)
+    rise = np.minimum(t_s, 1.0)
+    return along(fine, size * x * rise**2 * (3.0 - 2.0 * rise), case)
 
 
 def slipping(truth: Truth, case: int) -> Truth:

@@ -100,7 +100,8 @@ def doubt(
 
     ::
 
-        d dᵀ + C_s         d: by how much the parameters move,  C_s: their covariance then
+        d dᵀ + C_s + r rᵀ    d: by how much the parameters move,  C_s: their covariance then
+                             r: how far those of the rival are away
 
     which is how far the law's error pulls them (Hausman, Econometrica 46(6), 1978).
     """
@@ -110,7 +111,7 @@ def doubt(
     x, v = asked.rows.columns[:2, asked.places]
     turns = find_turns(x, v)
     deflection = _deflection_m(asked.problem.layout.values(best), asked)
-    because = _preferred(asked, law, settings, loss, best, known.weight)
+    because, rival = _preferred(asked, law, settings, loss, best, known.weight)
     least = MATERIAL * asked.sizes.coulomb_n / asked.problem.scale
     because = because or _comes_back(turns, residual, deflection, least)
     if not because:
@@ -119,7 +120,8 @@ def doubt(
     about |= turns.rows_since < ROWS_ABOUT_TURNS
     slow = np.abs(v) < asked.problem.layout.values(best).get("stribeck_velocity_m_per_s", 0.0)
     shows_peak = turns.count > 1 and int(np.sum(slow & ~about)) >= FEWEST_SLOW_ROWS
-    return Doubt(because, _widened(asked, loss, best, known, ~about), shows_peak)
+    wide = _widened(asked, loss, best, known, ~about)
+    return Doubt(because, _up_to(wide, rival - best), shows_peak)
 
 
 def events(asked: Prepared, settings: RunSettings, best: Array) -> dict[int, int]:
@@ -173,18 +175,22 @@ def _deflection_m(values: dict[str, float], asked: Prepared) -> float:
 
 def _preferred(
     asked: Prepared, law: Law, settings: RunSettings, loss: Loss, best: Array, weight: float
-) -> str:
-    """Say why the law is not preferred to its rival; empty where it is."""
+) -> tuple[str, Array]:
+    """Say why the rival is not worse, empty where it is; and give the rival's parameters."""
     rival = replace(law, name=RIVALS[law.name])
     problem, starts, bounds = _rival(asked, rival, settings, best)
     every = max(1, len(problem.measured) // THINNED_ROWS)
     ends = [minimize(problem.thinned(every), one, bounds, loss, EVALUATIONS) for one in starts]
-    other = _power(problem, min(ends, key=lambda one: one.cost).internal)
-    gain = weight * len(problem.measured) * float(np.log(other / _power(asked.problem, best)))
+    end = min(ends, key=lambda one: one.cost).internal
+    power = _power(problem, end)
+    gain = weight * len(problem.measured) * float(np.log(power / _power(asked.problem, best)))
+    values = {one.name: end[i] for i, one in enumerate(problem.layout.free)}
+    free = asked.problem.layout.free
+    found = np.array([values.get(one.name, best[i]) for i, one in enumerate(free)])
     if gain > PREFERRED:
-        return ""
+        return "", found
     how = "better" if gain < -PREFERRED else "as well"
-    return f"law {rival.name!r} explains the log {how}"
+    return f"law {rival.name!r} explains the log {how}", found
 
 
 def _power(problem: Problem, internal: Array) -> float:
@@ -235,6 +241,13 @@ def _comes_back(turns: Turns, residual: Array, deflection_m: float, least: float
         if abs(float(np.mean(means))) > max(limit * error, least):
             return "the errors of the law about turns come back at every turn"
     return ""
+
+
+def _up_to(known: Covariance, moved: Array) -> Covariance:
+    """Return the covariance that reaches to other parameters."""
+    told = np.isfinite(np.diag(known.matrix))
+    moved = np.where(told, moved, 0.0)
+    return replace(known, matrix=known.matrix + np.outer(moved, moved))
 
 
 def _widened(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from breakaway.measure.identification.record import Rows
+from breakaway.measure.identification.uncertainty import covariance
 from breakaway.measure.logs.derived import noise_floor
 from breakaway.measure.logs.log import Array
 
@@ -47,16 +48,15 @@ class Reference:
         return friction
 
     def mass_kg(self, force: Array) -> tuple[float, float]:
-        """Return the mass that the force shows, and its error if residuals are white, in kg."""
+        """Return the mass that the force shows, and its standard error, in kg."""
         inertia, others = self.columns[:, 0], self.columns[:, 1:]
         alone = inertia - others @ np.linalg.lstsq(others, inertia, rcond=RANK)[0]
-        shown = float(np.linalg.norm(alone))
-        if shown < HIDDEN:
+        if np.linalg.norm(alone) < HIDDEN:
             return 0.0, np.inf
         found = np.linalg.lstsq(self.columns, force, rcond=RANK)[0]
-        rms_n = float(np.sqrt(np.mean((force - self.columns @ found) ** 2)))
-        mass = float(alone @ force) / (shown**2 * self.acceleration_norm)
-        return mass, rms_n / (shown * self.acceleration_norm)
+        own = covariance(self.columns @ found - force, self.columns).matrix[0, 0]
+        mass = float(alone @ force) / float(alone @ alone)
+        return mass / self.acceleration_norm, float(np.sqrt(own)) / self.acceleration_norm
 
     def resisting(self, force: Array) -> Array:
         """Return the measured force without inertia, viscous friction and offset."""

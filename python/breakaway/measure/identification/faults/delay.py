@@ -33,8 +33,8 @@ CHANCE = 0.05
 AS_GOOD = 1.5
 """A law whose squared error is at most so many times the best one's has to show the delay too."""
 
-BETTER = 8.0
-"""Deviance by which delay or damping has to explain a log better than the other: odds 50 to 1."""
+BETTER = 10.0
+"""Deviance by which delay or damping has to explain a log better than the other: odds 150 to 1."""
 
 ALL_ALONG = 0.05
 """One-sided chance that blocks of a log, one for each turn, prefer either so much where both err
@@ -178,7 +178,7 @@ def _damped(log: Log, late: Late, settings: RunSettings, values: Mapping[str, fl
 
 def _explains_better(one: Late, other: Late, blocks: int) -> bool:
     """Whether a fit explains a log better than another, as a whole and all along."""
-    deviance = one.rows * float(np.log(other.sum / one.sum))
+    deviance = min(one.rows, other.rows) * float(np.log(other.sum / one.sum))
     gains = [float(part.sum()) for part in np.array_split(other.squares - one.squares, blocks)]
     error = float(np.std(gains, ddof=1)) / np.sqrt(blocks)
     return deviance > BETTER and np.mean(gains) > float(t.isf(ALL_ALONG, blocks - 1)) * error
