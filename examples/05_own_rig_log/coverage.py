@@ -12,6 +12,7 @@ from typing import NamedTuple
 from families import FAMILIES, log_of, rig_of
 
 import breakaway as bk
+from breakaway.measure.identification.verdicts import AT_ONE_SPEED
 from friction import LAWS
 
 REFUSED = "(refused)"
@@ -35,7 +36,10 @@ def judged(family: str, law: str, case: int) -> Judged:
     named = tuple(one.kind for one in found.faults)
     out = []
     for one in (*found.estimates, *found.combined):
-        inside = one.low <= getattr(truth, one.name) <= one.high
+        true = getattr(truth, one.name)
+        if one.remark.startswith(AT_ONE_SPEED):
+            true += truth.above_coulomb_n(found.excitation.fast_speed_m_per_s)
+        inside = one.low <= true <= one.high
         verdict = ("inside" if inside else "outside") if one.identifiable else "not told"
         out.append((one.name, verdict))
     fitted = {one.name for one in found.estimates}

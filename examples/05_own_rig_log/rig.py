@@ -48,6 +48,13 @@ class Truth(Levels):
         """What a pull shows at breakaway."""
         return self.stiction_n + self.offset_n
 
+    def above_coulomb_n(self, speed_m_per_s: float) -> float:
+        """Return by how much sliding friction is above the Coulomb level at a speed."""
+        peak = (self.stiction_ratio - 1.0) * np.exp(
+            -((speed_m_per_s / self.stribeck_velocity_m_per_s) ** 2)
+        )
+        return float(self.coulomb_n * peak + self.viscous_n_s_per_m * speed_m_per_s)
+
     @property
     def deflection_m(self) -> float:
         """The deflection at which the joint slides."""

@@ -312,7 +312,7 @@ class _Found:
         estimates = self._estimates(best, known)
         estimates = estimates if in_doubt is None else in_doubt.judged(estimates)
         combined = self._combined(best, known, estimates)
-        estimates = with_rig(self._judged(estimates), self.settings.rig)
+        estimates = self._of_speed(with_rig(self._judged(estimates), self.settings.rig))
         errors = residual * problem.scale
         rms = float(np.sqrt(np.mean(errors**2)))
         power = float(residual @ residual)
@@ -330,7 +330,7 @@ class _Found:
             spans=self.asked.spans,
             excitation=self.asked.excitation,
             estimates=tuple(_with_verdict(one, judged) for one in estimates),
-            combined=tuple(with_rig(combined, self.settings.rig)),
+            combined=tuple(self._of_speed(with_rig(combined, self.settings.rig))),
             fixed=dict(self.asked.held),
             rms_error=rms,
             relative_error_percent=percent,
@@ -377,6 +377,16 @@ class _Found:
         if not self._goes_one_way or shown.slips or not shown.broke_away:
             return ()
         return sums(self.asked.problem.layout, best, known.matrix, shown, estimates)
+
+    def _of_speed(self, estimates: Sequence[Estimate]) -> list[Estimate]:
+        """Say of sliding levels at which speed they hold, where the log has nearly one."""
+        said = self.asked.excitation.level_is_of if self.law.name != "coulomb" else ""
+        return [
+            replace(one, remark=said)
+            if said and one.identifiable and one.name.startswith("coulomb")
+            else one
+            for one in estimates
+        ]
 
     def _judged(self, estimates: Sequence[Estimate]) -> list[Estimate]:
         """Take back what the motion of the log does not tell."""

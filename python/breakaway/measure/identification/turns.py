@@ -34,6 +34,9 @@ COMES_BACK = 0.2
 FEWEST_SLIPS = 3
 """Fewest slips that make stick-slip."""
 
+RARE = 0.05
+"""Fewer slips do where they take less than this share of a log."""
+
 FALL = 0.05
 """Share of the force by which it falls in a slip, at least."""
 
@@ -137,7 +140,8 @@ def stick_slip(x: Array, v: Array, force: Array) -> tuple[int, int]:
 
     A slip is faster than a fifth of the top speed, and the part stands nearly still before the
     next one in the same direction. Over a slip the force falls in step with the way, as that of
-    the spring behind which it slips. Zero where that is not how the part moves.
+    the spring behind which it slips. One or two count where the part is slow for all the rest.
+    Zero where that is not how the part moves.
     """
     speed = np.abs(v)
     top = float(np.quantile(speed, 0.999))
@@ -147,10 +151,13 @@ def stick_slip(x: Array, v: Array, force: Array) -> tuple[int, int]:
     ways = x[ends] - x[starts]
     onward = np.abs(ways) > 0.3 * np.abs(ways).max(initial=0.0)
     starts, ends, ways = starts[onward], ends[onward], ways[onward]
-    if len(starts) < FEWEST_SLIPS:
+    if len(starts) == 0:
         return 0, 0
+    rare = np.sum(ends - starts) < RARE * len(v)
     pauses = zip(ends[:-1], starts[1:], strict=True)
-    stuck = np.array([bool(np.any(speed[end : start + 1] < STILL * top)) for end, start in pauses])
+    stuck = np.array(
+        [bool(np.any(speed[end : start + 1] < STILL * top)) for end, start in pauses], dtype=bool
+    )
     again = stuck & (np.sign(ways[1:]) == np.sign(ways[:-1]))
     falls = np.sign(ways) * (force[starts] - force[ends])
     shares = [
@@ -160,6 +167,7 @@ def stick_slip(x: Array, v: Array, force: Array) -> tuple[int, int]:
     ]
     falls_enough = np.median(falls) > FALL * np.median(np.abs(force))
     in_step = bool(shares) and HALFWAY[0] < np.median(shares) < HALFWAY[1]
-    if np.sum(again) < FEWEST_SLIPS - 1 or not (falls_enough and in_step):
+    often = np.sum(again) >= FEWEST_SLIPS - 1
+    if not (often or (rare and np.all(again))) or not (falls_enough and in_step):
         return 0, 0
     return len(starts), int(np.median(ends - starts)) - 1

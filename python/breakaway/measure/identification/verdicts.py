@@ -30,6 +30,9 @@ Places = NDArray[np.integer[Any]]
 SPEED_RATIO = 3.0
 """Speeds must differ by this factor before what depends on speed shows."""
 
+AT_ONE_SPEED = "the level at"
+"""What is said of a sliding level where the law may have another at other speeds."""
+
 SLIDING_SHARE = 0.02
 """Least share of the moving rows that makes a band of speed count."""
 
@@ -117,6 +120,13 @@ class Excitation:
     def speed_ratio(self) -> float:
         """Fast over slow speed."""
         return self.fast_speed_m_per_s / max(self.slow_speed_m_per_s, 1e-300)
+
+    @property
+    def level_is_of(self) -> str:
+        """Say of which speed a sliding level is, where the log has nearly one; else empty."""
+        if self.speed_ratio >= SPEED_RATIO:
+            return ""
+        return f"{AT_ONE_SPEED} {self.fast_speed_m_per_s:.3g} m/s, nearly the only speed"
 
 
 @dataclass(frozen=True)
