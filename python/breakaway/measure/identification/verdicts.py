@@ -42,6 +42,9 @@ PRESLIDING_QUANTA = 5.0
 OUTLYING = 7
 """Rows of a median of the force: up to three that stand out do not say how a joint slides."""
 
+MEDIAN_NOISE = math.sqrt(0.5 * math.pi / OUTLYING)
+"""White noise of that median, as a share of the noise of one row."""
+
 NO_PEAK = 1.02
 """F_s / F_c whose interval ends below this is no stiction peak."""
 
@@ -70,7 +73,7 @@ class Excitation:
     Parameters
     ----------
     slow_speed_m_per_s, fast_speed_m_per_s : float
-        5 % and 95 % quantiles of the speed where the part moves.
+        5 % and 95 % quantiles of the speed where the part slides, its bristles loaded.
     reversals : int
         Changes of direction.
     rests : int
@@ -151,22 +154,26 @@ def excitation(rows: Rows, places: Places, mass_kg: float = 0.0) -> Excitation:
     top = float(np.quantile(speed, 0.99))
     moving = speed > MOVING * top
     sign = np.sign(v[moving])
-    slow, fast = (float(q) for q in np.quantile(speed[moving], [0.05, 0.95]))
     force_noise = noise_floor(rows.log, "force_n")
-    noise_n = max(force_noise.white, force_noise.quantization)
+    noise_n = MEDIAN_NOISE * max(force_noise.white, force_noise.quantization)
     friction = median_filter(force - mass_kg * rows.columns[2, places], OUTLYING, mode="nearest")
-    slides = broke_away(find_turns(x, v), friction, noise_m, noise_n)
+    turns = find_turns(x, v)
+    slides = broke_away(turns, friction, noise_m, noise_n)
     both = bool(min(np.mean(sign > 0), np.mean(sign < 0)) > SLIDING_SHARE)
     both = both and (slides is None or slides[0] == slides[1])
     direction = 0 if both else int(np.sign(np.median(sign)))
     slips, slip_rows = stick_slip(x, v, force)
+    presliding_m = _presliding(x, v, force, top)
+    sliding = moving & (turns.since_m > (presliding_m or _loading(x, v, force, top)))
+    counted = sliding if np.sum(sliding) > 0.5 * np.sum(moving) else moving
+    slow, fast = (float(q) for q in np.quantile(speed[counted], [0.05, 0.95]))
     still = speed < STILL * top
     return Excitation(
         slow_speed_m_per_s=slow,
         fast_speed_m_per_s=fast,
         reversals=int(np.count_nonzero(np.diff(sign))),
         rests=_rests(rows, places),
-        presliding_m=_presliding(x, v, force, top),
+        presliding_m=presliding_m,
         noise_m=noise_m,
         both_directions=both,
         direction=direction,
@@ -201,6 +208,14 @@ def _presliding(x: Array, v: Array, force: Array, top: float) -> float:
             far = turn.max() if v[before] > 0.0 else turn.min()
             travels.append(abs(float(x[there]) - float(far)))
     return float(np.median(travels)) if travels else 0.0
+
+
+def _loading(x: Array, v: Array, force: Array, top: float) -> float:
+    """Return the way from the start until the force has made 80 % of its change."""
+    change = force - force[0]
+    level = float(np.median(change[np.abs(v) > 0.5 * top]))
+    loaded = np.flatnonzero(np.sign(level) * change > 0.8 * abs(level))
+    return abs(float(x[loaded[0]] - x[0])) if loaded.size else 0.0
 
 
 def verdicts(

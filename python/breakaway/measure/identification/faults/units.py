@@ -22,7 +22,7 @@ class Usual:
 
 USUAL = (
     Usual("friction level", "N", 1e-3, 1e7, "force"),
-    Usual("stiffness", "N/m", 1e4, 1e11, "force"),
+    Usual("stiffness", "N/m", 1e2, 1e11, "force"),
     Usual("deflection before sliding", "m", 1e-8, 1e-3, "position"),
     Usual("mass", "kg", 1e-3, 1e5, "force"),
     Usual("fast speed", "m/s", 1e-7, 20.0, "position"),
