@@ -234,3 +234,9 @@ def log_of(family: str, law: str, case: int) -> tuple[Truth, bk.Log]:
     one = FAMILIES[family]
     truth = one.part(drawn(case, law), case)
     return truth, one.make(truth, case)
+
+
+if __name__ == "__main__":
+    for name in FAMILIES:
+        truth, log = log_of(name, "lugre", 0)
+        print(f"{name}: {log.rows} rows over {log.position_m.max() - log.position_m.min():.2g} m")

@@ -150,3 +150,18 @@ LAWS = {
     "maxwell_slip": MaxwellSlip,
     "two_regions": TwoRegions,
 }
+
+
+if __name__ == "__main__":
+    joint = Levels(
+        coulomb_n=10.0,
+        viscous_n_s_per_m=0.0,
+        stiction_ratio=1.5,
+        stribeck_velocity_m_per_s=0.01,
+        stiffness_n_per_m=1e6,
+        damping_n_s_per_m=0.0,
+    )
+    for name, law in LAWS.items():
+        moved = law(joint)
+        largest_n = max(moved.move(1e-7, 1e-3) for _ in range(1000))
+        print(f"{name}: breaks loose at {largest_n:.3g} N of 15 N, pulled at 0.1 mm/s")

@@ -53,6 +53,8 @@ class Truth(Levels):
         peak = (self.stiction_ratio - 1.0) * np.exp(
             -((speed_m_per_s / self.stribeck_velocity_m_per_s) ** 2)
         )
+        if self.law == "two_regions":  # slides at the Coulomb level at any speed
+            peak = 0.0
         return float(self.coulomb_n * peak + self.viscous_n_s_per_m * speed_m_per_s)
 
     @property

@@ -33,7 +33,8 @@ REACH = 1e4
 class Scales:
     """Rough size of everything in a log, which guesses and bounds come from.
 
-    ``hidden_mass_kg`` is the largest mass that would not show, 0 where one shows or is given.
+    ``hidden_mass_kg`` is how large a mass may be that does not show, at 95 %; 0 where one does or
+    is given.
     """
 
     mass_kg: float
@@ -108,7 +109,7 @@ def scales(rows: Rows, chosen: Array, mass_kg: float | None) -> Scales:
 
 
 def _inertia(rows: Rows, chosen: Array) -> tuple[float, float]:
-    """Return the mass in kg that shows under any hysteresis, and the largest that would not."""
+    """Return the mass in kg that shows under any hysteresis, and how large a hidden one may be."""
     some = thinned(replace(rows, columns=rows.columns[:, chosen]))
     force, a = some.driving_force_n, some.columns[2]
     size, acceleration = (max(float(np.sqrt(np.mean(one**2))), 1e-300) for one in (force, a))
@@ -116,7 +117,7 @@ def _inertia(rows: Rows, chosen: Array) -> tuple[float, float]:
     mass, error = reference(some).mass_kg(force)
     if mass > max(INERTIA_ERRORS * error, least):
         return mass, 0.0
-    return 0.0, min(max(mass, 0.0) + INERTIA_ERRORS * error, least)
+    return 0.0, min(max(mass, 0.0) + 2.0 * error, least)
 
 
 def _velocity_noise(rows: Rows, noise_m: float) -> float:
