@@ -192,7 +192,7 @@ def test_samples_that_are_marked_invalid_are_left_out_and_told(tmp_path: Path) -
     path = write(tmp_path, [force, signal("position", T_S, "m")])
     log = read_log(path, {"channels": {"force_n": {"from": "force", "unit": "N"}}})
     assert log.force_n.tolist() == np.delete(T_S, [7, 8]).tolist() == log.t_s.tolist()
-    assert [str(one) for one in log.findings][0] == "'force': 2 samples marked invalid left out"
+    assert str(log.findings[0]) == "'force': 2 samples marked invalid left out"
     assert "gap" in {one.kind for one in log.findings}
 
 

@@ -46,7 +46,8 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
     # Channel refuses what is not finite, by its row.
     with named(raw.path.name), np.errstate(over="ignore", invalid="ignore"):
         picks = _mapped(raw, mapping) if mapping.channels else _stated(raw)
-        raw.load(pick.column for pick in picks)
+        stamps = {pick.time or mapping.time.from_ for pick in picks} - {None}
+        raw.load([*(pick.column for pick in picks), *(place(raw, str(one)) for one in stamps)])
         times = _Times(raw, mapping)
         channels = [_build(raw, pick, times) for pick in picks]
     used = {pick.column for pick in picks} | times.used

@@ -75,7 +75,7 @@ def _unit(field: Any) -> str:  # noqa: ANN401 - pyarrow has no types
 
 def _read(raw: RawFile, field: Any, file: Any) -> Any:  # noqa: ANN401 - pyarrow has no types
     """Return the values of a column, stamps as whole numbers; None where some are missing."""
-    values = np.empty(file.metadata.num_rows, np.int64 if _is_stamp(field.type) else np.float64)
+    values = np.empty(file.metadata.num_rows, np.int64 if _is_whole(field.type) else np.float64)
     done = missing = 0
     for batch in file.iter_batches(ROWS_AT_ONCE, columns=[field.name], use_threads=False):
         column = batch.column(field.name)
@@ -106,6 +106,11 @@ def _add(raw: RawFile, fields: dict[str, Any], found: dict[str, Any]) -> None:
         # Whole numbers are subtracted before they become seconds, which would round them.
         late_s = (first * unit_ns - zero_ns) * 1e-9
         raw.add(name, late_s + (values - first) * (unit_ns * 1e-9), None)
+
+
+def _is_whole(kind: Any) -> bool:  # noqa: ANN401 - pyarrow has no types
+    """Whether int64 holds all values of a type, which float64 may round."""
+    return _is_stamp(kind) or bool(pa.types.is_integer(kind) and not pa.types.is_uint64(kind))
 
 
 def _is_number(kind: Any) -> bool:  # noqa: ANN401 - pyarrow has no types

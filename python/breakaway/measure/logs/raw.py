@@ -143,13 +143,15 @@ class RawFile:
         """Note why the values of a channel that is listed cannot be read."""
         self.unreadable[name] = reason
 
-    def refuse(self, name: str, reason: str) -> None:
-        """Note why a channel cannot be read."""
+    def refuse(self, name: str, reason: str, unit: str = "") -> None:
+        """Note why a channel cannot be read; its unit says which one it is all the same."""
         if name in self:
             self.listed.pop(name, None)
             reason = "there are several of this name; rename all but one"
         self._check_name(name)
         self.unreadable[name] = reason
+        if unit:
+            self.listed[name] = Listed(unit)
 
     def _check_name(self, name: str) -> None:
         """Refuse a file with a name too long, or with too many.

@@ -95,11 +95,11 @@ def _list(
             f"changes its unit within the file, from {units[0]!r} to {units[1]!r}: export the "
             "recordings apart"
         )
+    unit = str(channel.properties.get("unit_string", ""))
     if reason:
-        raw.refuse(name, reason)
+        raw.refuse(name, reason, unit)
         return
     step = float(channel.properties.get("wf_increment", 0.0))
-    unit = str(channel.properties.get("unit_string", ""))
     rate_hz = 1.0 / step if step else None
     raw.list(name, Listed(unit, str(channel.dtype), len(channel), rate_hz))
 
