@@ -508,6 +508,7 @@ ACCEPTED = {
     **dict.fromkeys(LISTS, ([],)),
     **dict.fromkeys(MAPPINGS, ({},)),
     "history": ([], {}),
+    "noticed": ([], {}),
     "ignored_columns": ([], {}),
     "impose_motion.velocity_m_per_s": ([],),
     "measured_cycles.velocity_m_per_s": (),

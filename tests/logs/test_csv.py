@@ -80,7 +80,7 @@ def test_lists_the_columns_that_it_does_not_read(write: Write) -> None:
         (table().replace(",", ";"), "one cell; columns must be separated by commas"),
         (
             "t_s,x_m,force_n,force_n\n" + "0,1,2,3\n" * 10,
-            "column 'force_n': there are several of this name",
+            "columns 'force_n#1' and 'force_n#2' both give 'force_n'",
         ),
         (table(row5="0.05,n/a,2.5"), "column 'position_m', row 5: 'n/a' is not a number"),
         (table(row5="0.05,,2.5"), "column 'position_m', row 5: '' is not a number"),
@@ -92,7 +92,6 @@ def test_lists_the_columns_that_it_does_not_read(write: Write) -> None:
         (table(row7="0.07,1e15,1"), r"column 'position_m', row 7: 1e\+15 is not a measurement"),
         (table(row9="0.09,0.1"), "row 9: 2 cells where the header has 3"),
         (table(row9="0.09,0.1,1,2"), "row 9: 4 cells where the header has 3"),
-        (table(row9=""), "row 9: 0 cells where the header has 3"),
         (table(row9='0.09,0.1,"2'), "is not comma-separated text"),
         ("t_s,position_m,force_n\n0,0,0\n1,1,1\n", "2 rows; a log needs at least 10"),
         ("t_s,position_m,force_n\n", "0 rows; a log needs at least 10"),
@@ -187,7 +186,7 @@ def test_a_point_is_no_decimal_mark_beside_a_comma(write: Write) -> None:
     for force in ("1.500", "1.500,5", "2.5"):
         text = table("t_s;position_m;force_n").replace(",", ";").replace(".", ",")
         path = write(text.replace(";2,5", f";{force}"))
-        words = rf"column 'force_n', row 1: '{force}' is not a number; .* such as -1,5e-3"
+        words = rf"column 'force_n', row 1: '{force}' is not a number .*thousands.* such as -1,5e-3"
         with pytest.raises(LogError, match=words):
             read_log(path, {"csv": layout})
 
@@ -203,7 +202,6 @@ def test_lines_above_the_header_may_hold_anything(write: Write, above: str) -> N
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("\n" + table(), r"the header is an empty line; set csv\.skip_rows"),
         ("made by a rig\n" + table(), r"csv\.skip_rows in a mapping leaves out lines"),
         (table().replace(",", "\t"), r'delimiter = "\\t"'),
         (table().replace(",", ";"), 'delimiter = ";"'),

@@ -18,7 +18,7 @@ from tests.logs.mdf_files import FLOAT, ROWS, SIGNED, T_S, UNSIGNED, Maker, sign
 from breakaway.errors import LogError
 from breakaway.measure.logs import read_log
 from breakaway.measure.logs.budget import Budget
-from breakaway.measure.logs.mdf import read_mdf
+from breakaway.measure.logs.mdf import open_mdf
 from breakaway.measure.logs.raw import RawFile
 
 HIGHEST_FIRST = 1
@@ -26,7 +26,10 @@ TIME = {"kind": 2, "counts": 1}
 
 
 def read(path: Path, most_bytes: float = 1e8) -> RawFile:
-    return read_mdf(path, Budget(path.name, most_bytes))
+    """Open a file and read all its channels."""
+    with open_mdf(path, Budget(path.name, most_bytes)) as raw:
+        raw.load(raw.names)
+    return raw
 
 
 def sorted_file(path: Path, size: int, data: bytes, *channels: dict[str, Any], **told: int) -> Path:
@@ -98,7 +101,7 @@ def test_the_unit_of_a_channel_is_before_that_of_its_conversion(tmp_path: Path) 
         told = {} if unit is None else {"unit": maker.text(unit)}
         group = maker.group(maker.channel("a", conversion=conversion, **told), 1, 8)
         path = maker.finish(tmp_path / "unit.mf4", (group, maker.block("DT", [], bytes(8)), 0))
-        assert read(path).channels["a"].unit == expected
+        assert read(path).listed["a"].unit == expected
 
 
 def test_markup_is_searched_and_no_entity_of_its_own_is_known(tmp_path: Path) -> None:
@@ -107,7 +110,7 @@ def test_markup_is_searched_and_no_entity_of_its_own_is_known(tmp_path: Path) ->
     unit = maker.block("MD", [], markup.encode())
     group = maker.group(maker.channel("a", unit=unit), 1, 8)
     path = maker.finish(tmp_path / "unit.mf4", (group, maker.block("DT", [], bytes(8)), 0))
-    assert read(path).channels["a"].unit == "m<&lt;&e;"
+    assert read(path).listed["a"].unit == "m<&lt;&e;"
 
 
 def test_virtual_channels_count_rows(tmp_path: Path) -> None:
@@ -183,13 +186,14 @@ def test_what_is_no_number(tmp_path: Path, told: dict[str, int], words: str) -> 
     assert list(raw.channels) == ["b"]
 
 
-def test_a_sample_that_is_marked_invalid_is_not_believed(tmp_path: Path) -> None:
-    marked = np.arange(ROWS) == 7
+def test_samples_that_are_marked_invalid_are_left_out_and_told(tmp_path: Path) -> None:
+    marked = np.isin(np.arange(ROWS), [7, 8])
     force = asammdf.Signal(T_S, T_S, unit="N", name="force", invalidation_bits=marked)
     path = write(tmp_path, [force, signal("position", T_S, "m")])
-    with pytest.raises(LogError, match="column 'force', row 8: the sample is marked invalid"):
-        read_log(path, {"channels": {"force_n": {"from": "force", "unit": "N"}}})
-    assert list(read(path).channels) == ["position"]
+    log = read_log(path, {"channels": {"force_n": {"from": "force", "unit": "N"}}})
+    assert log.force_n.tolist() == np.delete(T_S, [7, 8]).tolist() == log.t_s.tolist()
+    assert str(log.findings[0]) == "'force': 2 samples marked invalid left out"
+    assert "gap" in {one.kind for one in log.findings}
 
 
 def test_parts_of_a_structure_are_channels_and_arrays_are_not(tmp_path: Path) -> None:

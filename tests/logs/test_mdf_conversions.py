@@ -13,7 +13,7 @@ from tests.logs.mdf_files import converted, write
 from breakaway.errors import LogError
 from breakaway.measure.logs import read_log
 from breakaway.measure.logs.budget import Budget
-from breakaway.measure.logs.mdf import read_mdf
+from breakaway.measure.logs.mdf import open_mdf
 from breakaway.measure.logs.mdf.conversion import ConversionError, Ranges, Table
 
 Conversion = ChannelConversion
@@ -116,15 +116,17 @@ KNOWN: dict[str, tuple[ChannelConversion, np.ndarray, list[float]]] = {
 
 def force_of(path: Path) -> np.ndarray:
     """Return the values of the force; fail with the reason if there are none."""
-    raw = read_mdf(path, Budget(path.name, 1e8))
+    with open_mdf(path, Budget(path.name, 1e8)) as raw:
+        raw.load(raw.names)
     assert raw.unreadable == {}
-    assert raw.channels["force"].unit == "N"
+    assert raw.listed["force"].unit == "N"
     return raw.channels["force"].values
 
 
 def why_not(path: Path) -> str:
     """Return why the force cannot be read."""
-    raw = read_mdf(path, Budget(path.name, 1e8))
+    with open_mdf(path, Budget(path.name, 1e8)) as raw:
+        raw.load(raw.names)
     assert raw.channels == {}
     return raw.unreadable["force"]
 

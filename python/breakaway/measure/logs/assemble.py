@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from breakaway.base.text import brief
 from breakaway.errors import LogError
@@ -43,6 +46,8 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
     # Channel refuses what is not finite, by its row.
     with named(raw.path.name), np.errstate(over="ignore", invalid="ignore"):
         picks = _mapped(raw, mapping) if mapping.channels else _stated(raw)
+        stamps = {pick.time or mapping.time.from_ for pick in picks} - {None}
+        raw.load([*(pick.column for pick in picks), *(place(raw, str(one)) for one in stamps)])
         times = _Times(raw, mapping)
         channels = [_build(raw, pick, times) for pick in picks]
     used = {pick.column for pick in picks} | times.used
@@ -52,6 +57,7 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
         sha256=digest,
         ignored_columns=tuple(name for name in raw.names if name not in used),
         history=(*raw.history, *(text for pick in picks for text in _notes(pick, raw))),
+        noticed=raw.findings,
     )
 
 
@@ -63,9 +69,9 @@ def _build(raw: RawFile, pick: Pick, times: _Times) -> Channel:
     )
 
 
-def converted(values: Array, factor: float, offset: float = 0.0) -> Array:
+def converted(values: npt.NDArray[Any], factor: float, offset: float = 0.0) -> Array:
     """Return factor * values + offset, read-only; the same array where nothing changes."""
-    if (factor, offset) == (1.0, 0.0):
+    if (factor, offset) == (1.0, 0.0) and values.dtype == np.float64:
         return values
     result = factor * values
     result += offset
@@ -126,9 +132,19 @@ def _mapped(raw: RawFile, mapping: Mapping) -> list[Pick]:
 
 def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> FileUnit:
     """Return the unit of a mapped column: of the mapping, else the file, else its name."""
+    symbol = file_unit(raw, name)
     if keys.unit is not None:
-        return unit_named(keys.unit, channel)
-    symbol = column(raw, name).unit
+        unit = unit_named(keys.unit, channel)
+        told = stated(symbol, channel) if symbol else None
+        if symbol and told != unit:
+            raw.notice(
+                "unit",
+                name,
+                1,
+                f"the file states the unit '{brief(symbol)}', the mapping '{brief(keys.unit)}', "
+                "which is taken",
+            )
+        return unit
     if symbol:
         return unit_named(symbol, channel)
     header = read_header(name)
@@ -146,6 +162,7 @@ class _Times:
     def __init__(self, raw: RawFile, mapping: Mapping) -> None:
         self.raw, self.mapping = raw, mapping
         self.used: set[str] = set()
+        self.zero: Fraction | None = None
         self.shared: dict[str, Array] = {}
         self.headers: list[str] | None = None
 
@@ -162,8 +179,19 @@ class _Times:
             found = column(self.raw, name)
             keys = ChannelMapping.parse({"from": name, "unit": self.mapping.time.unit})
             unit = _unit(self.raw, name, "t_s", keys)
-            self.shared[name] = converted(found.values, unit.factor)
+            self.shared[name] = self._seconds(found.values, unit)
         return self.shared[name]
+
+    def _seconds(self, values: npt.NDArray[Any], unit: FileUnit) -> Array:
+        """Convert stamps; integers that float64 would round count from the first of any column."""
+        if values.dtype == np.float64:
+            return converted(values, unit.factor)
+        if self.zero is None:
+            self.zero = Fraction(int(values[0])) * Fraction(unit.factor).limit_denominator(10**9)
+        late = Fraction(int(values[0])) * Fraction(unit.factor).limit_denominator(10**9) - self.zero
+        seconds: Array = float(late) + unit.factor * (values - values[0])
+        seconds.setflags(write=False)
+        return seconds
 
     def _header(self) -> str:
         if self.headers is None:
@@ -194,6 +222,11 @@ def place(raw: RawFile, name: str) -> str:
     ends = [full for full in raw.names if full.endswith((f"/{name}", f".{name}"))]
     if len(ends) == 1:
         return ends[0]
+    if f"{name}#1" in raw:
+        raise LogError(
+            f"there are several columns '{brief(name)}'; name one by its number, such as "
+            f"'{brief(name)}#2'"
+        )
     if ends:
         raise LogError(
             f"'{brief(name)}' may be {' or '.join(map(brief, ends[:5]))}; give the whole name"
@@ -202,7 +235,8 @@ def place(raw: RawFile, name: str) -> str:
 
 
 def column(raw: RawFile, name: str) -> RawChannel:
-    """Return a column, or raise `LogError` with the reason why it cannot be read."""
+    """Return a column, read where it is not yet, or raise `LogError` with why it cannot be."""
+    raw.load([name])
     if name in raw.unreadable:
         raise LogError(f"column '{brief(name)}'{_joint(raw.unreadable[name])}")
     return raw.channels[name]

@@ -7,18 +7,35 @@ import csv
 import io
 import math
 from array import array
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.csv as arrow
 
+from breakaway.base.one_line import counted
 from breakaway.base.reading import open_regular
 from breakaway.base.text import brief
 from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
+from breakaway.measure.logs.channel import Array
 from breakaway.measure.logs.mapping import CsvMapping
-from breakaway.measure.logs.raw import RawChannel, RawFile, check_names, frozen
+from breakaway.measure.logs.raw import (
+    EXACT,
+    Listed,
+    RawChannel,
+    RawFile,
+    check_names,
+    frozen,
+    whole,
+)
 
 LONGEST_ROW = 4 * 2**20
 """Most characters of a row."""
@@ -39,11 +56,12 @@ BYTES_PER_TEXT = 100
 """A cell as a text with its place in a list."""
 
 
-def read_csv(path: Path, budget: Budget, layout: CsvMapping) -> RawFile:
-    """Read a UTF-8 file of separated values with one header line.
+@contextmanager
+def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile]:
+    """Open a text file of separated values with at most one header line.
 
-    Empty lines are accepted at the end only. A column that holds anything but finite numbers
-    is noted as unreadable; rows count from 1, after the header.
+    Arrow reads the cells. Where it finds one that is no finite number, they are read once more, row
+    by row, to say which: rows count from 1, after the header. Blank lines are left out, and told.
 
     Parameters
     ----------
@@ -52,67 +70,176 @@ def read_csv(path: Path, budget: Budget, layout: CsvMapping) -> RawFile:
     budget : Budget
         What it may take.
     layout : CsvMapping
-        Delimiter, decimal mark, lines above the header, units row.
+        Encoding, delimiter, decimal mark, lines above the header, header, units row.
 
     Raises
     ------
     LogError
-        The file is not UTF-8, holds no header, a row has more or fewer cells than it, or a row,
-        a name or the number of columns goes beyond its limit.
+        The file is not of its encoding, holds no header, a row has more or fewer cells than it, or
+        a row, a name or the number of columns goes beyond its limit.
 
     """
-    most_rows = _survey(path)
-    with open_regular(path) as file:
-        rows = _Rows(path, io.TextIOWrapper(file, encoding="utf-8-sig", newline=""), layout)
+    raw = RawFile(path)
+    encoding = layout.encoding or told_encoding(path)
+    most_rows = _survey(path, encoding)
+    with _text(path, encoding) as text:
+        rows = _Rows(path, text, layout)
         header, units = _header(path, rows, layout)
-        count = len(header)
+        table = _Table(path, encoding, layout, header, rows.lines_taken)
+        next(_blocks(path, rows, len(header), 1), None)  # a title in place of a header shows here
+    places = {}
+    for place, (name, unit) in enumerate(zip(_told_apart(header), units, strict=True)):
+        raw.list(name, Listed(unit, "text"))
+        places[name] = place
+
+    def read(wanted: list[str]) -> None:
+        columns = [places[name] for name in wanted]
+        budget.take("its rows", 8 * len(columns) * most_rows, 10 * len(columns) * most_rows)
+        plain = table.by_arrow(columns)
+        found: Sequence[Array | str] = plain or table.by_row(columns, budget, most_rows)
+        lengths = [len(one) for one in found if isinstance(one, np.ndarray)]
+        blank = most_rows - 1 - table.first_line - max(lengths, default=most_rows)
+        if blank > 0:
+            raw.notice("blank", "", blank, f"{counted(blank, 'blank line')} left out")
+        for name, one in zip(wanted, found, strict=True):
+            if isinstance(one, str):
+                raw.give_up(name, one)
+            else:
+                is_large = one.size > 0 and float(np.max(np.abs(one))) > EXACT
+                exact = table.integers(places[name]) if is_large else None
+                raw.channels[name] = RawChannel(frozen(one) if exact is None else exact)
+
+    raw.read = read
+    yield raw
+
+
+def _told_apart(header: list[str]) -> list[str]:
+    """Number the names of columns that repeat: ``force#1``, ``force#2``."""
+    count, seen = Counter(header), Counter[str]()
+    names = []
+    for name in header:
+        seen[name] += 1
+        names.append(f"{name}#{seen[name]}" if count[name] > 1 else name)
+    return names
+
+
+@contextmanager
+def _text(path: Path, encoding: str) -> Iterator[io.TextIOWrapper]:
+    with open_regular(path) as file, io.TextIOWrapper(file, encoding, newline="") as text:
+        yield text
+
+
+@dataclass(frozen=True)
+class _Table:
+    """The rows below the header of a file, read by Arrow, or one by one."""
+
+    path: Path
+    encoding: str
+    layout: CsvMapping
+    header: list[str]
+    first_line: int
+    """How many lines are above the rows."""
+
+    def by_arrow(self, columns: list[int]) -> list[Array] | None:
+        """Return the numbers of columns; None where a cell or a row is not as it must be."""
+        table = self._read(columns, pa.float64())
+        if table is None or any(column.null_count for column in table.columns):
+            return None
+        found = [_numbers(column) for column in table.columns]
+        return found if all(np.isfinite(one).all() for one in found) else None
+
+    def integers(self, column: int) -> npt.NDArray[np.int64] | None:
+        """Return a column of whole numbers as they are; None where it has others."""
+        table = self._read([column], pa.int64())
+        return None if table is None else whole(table.column(0).to_numpy())
+
+    def _read(self, columns: list[int], kind: Any) -> Any:  # noqa: ANN401 - pyarrow has no types
+        names = [str(place) for place in range(len(self.header))]
+        chosen = [names[place] for place in columns]
+        options = {
+            "read_options": arrow.ReadOptions(
+                column_names=names, skip_rows=self.first_line, encoding=self.encoding
+            ),
+            "parse_options": arrow.ParseOptions(delimiter=self.layout.delimiter),
+            "convert_options": arrow.ConvertOptions(
+                include_columns=chosen,
+                column_types=dict.fromkeys(chosen, kind),
+                null_values=[],
+                decimal_point=self.layout.decimal,
+            ),
+        }
+        try:
+            with open_regular(self.path) as file:
+                return arrow.read_csv(file, **options)
+        except pa.ArrowInvalid:
+            return None
+
+    def by_row(self, columns: list[int], budget: Budget, most_rows: int) -> list[Array | str]:
+        """Return the numbers of columns, or why one cannot be read."""
+        count = len(self.header)
         at_once = max(ROWS_AT_ONCE, CELLS_AT_ONCE // max(count, 1))
         passing = BYTES_PER_TEXT * count * min(at_once, most_rows)
-        budget.take("its rows", BYTES_PER_CELL * count * most_rows, passing)
-        columns = [_Column(layout.decimal) for _ in header]
-        for block in _blocks(path, rows, count, at_once):
-            plain = all(map(_is_plain, map("".join, block)))
-            for column, cells in zip(columns, zip(*block, strict=True), strict=True):
-                column.extend(cells, plain)
-    return _gathered(path, header, units, columns)
+        budget.take("its cells", BYTES_PER_CELL * len(columns) * most_rows, passing)
+        found = [_Column(self.layout.decimal) for _ in columns]
+        with _text(self.path, self.encoding) as text:
+            rows = _Rows(self.path, text, self.layout)
+            rows.skip(self.first_line)
+            for block in _blocks(self.path, rows, count, at_once):
+                plain = all(map(_is_plain, map("".join, block)))
+                by_column = list(zip(*block, strict=True))
+                for column, place in zip(found, columns, strict=True):
+                    column.extend(by_column[place], plain)
+        return [column.reason or column.give() for column in found]
 
 
-def _gathered(path: Path, header: list[str], units: list[str], columns: list[_Column]) -> RawFile:
-    """Return the columns by their names; each gives its numbers away as it is copied."""
-    raw = RawFile(path)
-    for name, unit, column in zip(header, units, columns, strict=True):
-        if column.reason or name in raw:
-            raw.refuse(name, column.reason)
-        else:
-            raw.channels[name] = RawChannel(column.give(), unit=unit)
-    return raw
+def _numbers(column: Any) -> Array:  # noqa: ANN401 - pyarrow has no types
+    """Return a column of Arrow as an array of its own."""
+    values = np.empty(len(column), np.float64)
+    done = 0
+    for chunk in column.chunks:
+        values[done : done + len(chunk)] = chunk.to_numpy()
+        done += len(chunk)
+    return values
 
 
-def _survey(path: Path) -> int:
-    """Return how many rows there are at most; refuse what is not UTF-8."""
-    decoder, block, marks, done = codecs.getincrementaldecoder("utf-8")(), b"", 1, 0
+def told_encoding(path: Path) -> str:
+    """Return the encoding that the first bytes of a file tell for certain, else UTF-8."""
+    with open_regular(path) as file:
+        head = file.read(4)
+    if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    return "utf-8-sig" if head.startswith(codecs.BOM_UTF8) else "utf-8"
+
+
+def _survey(path: Path, encoding: str) -> int:
+    """Return how many lines there are at most; refuse what is not of the encoding."""
+    decoder, block, marks, done = codecs.getincrementaldecoder(encoding)(), b"", 1, 0
+    plain = encoding in ("utf-8", "utf-8-sig", "cp1252", "latin-1")
     with open_regular(path) as file:
         while not done or block:
             block = file.read(2**20)
             pending = len(decoder.getstate()[0])
             try:
-                decoder.decode(block, final=not block)
+                text = decoder.decode(block, final=not block)
             except UnicodeDecodeError as error:
                 raise LogError(
-                    f"{path.name}: byte {done - pending + error.start + 1} is not UTF-8 text; a "
-                    "CSV log is a UTF-8 text file: save it as UTF-8, or name another format"
+                    f"{path.name}: byte {done - pending + error.start + 1} is not "
+                    f"{encoding.removesuffix('-sig').upper()} text; a CSV log is read as UTF-8 "
+                    "unless a mapping says otherwise: save it so, write "
+                    'csv = { encoding = "cp1252" } for one from Windows, or name another format'
                 ) from None
-            marks += block.count(b"\n") + block.count(b"\r") - block.count(b"\r\n")
+            lines = block if plain else text.encode()
+            marks += lines.count(b"\n") + lines.count(b"\r") - lines.count(b"\r\n")
             done += len(block)
     return marks
 
 
 class _Rows:
-    """The rows of a table, each of limited length; empty ones at the end are left out."""
+    """The rows of a table, each of limited length; blank lines are left out."""
 
     def __init__(self, path: Path, text: io.TextIOWrapper, layout: CsvMapping) -> None:
         self.path, self.text = path, text
-        self.length = 0
+        self.length = self.lines_taken = 0
         self.lines = self._lines()
         self.cells = csv.reader(self.lines, delimiter=layout.delimiter, strict=True)
         self.found = self._found()
@@ -128,6 +255,7 @@ class _Rows:
     def _lines(self) -> Iterator[str]:
         while line := self.text.readline(LONGEST_ROW + 1):
             self.length += len(line)
+            self.lines_taken += 1
             if self.length > LONGEST_ROW:
                 raise LogError(
                     f"{self.path.name}: a row has more than {LONGEST_ROW:,} characters, the limit: "
@@ -139,17 +267,11 @@ class _Rows:
         return self.found
 
     def _found(self) -> Iterator[list[str]]:
-        empty = 0
         try:
             for row in self.cells:
                 self.length = 0
-                if not row:
-                    empty += 1
-                    continue
-                for _ in range(empty):
-                    yield []
-                empty = 0
-                yield row
+                if row:
+                    yield row
         except csv.Error as error:
             raise LogError(
                 f"{self.path.name}: is not comma-separated text ({error}); export it as CSV with "
@@ -160,6 +282,8 @@ class _Rows:
 def _header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], list[str]]:
     """Return the names and the units (empty texts without a units row)."""
     rows.skip(layout.skip_rows)
+    if not layout.header:
+        return _without_header(path, rows, layout)
     top = list(islice(rows, 1 + layout.units_row))
     if not top and not layout.skip_rows:
         raise LogError(f"{path.name}: the file holds only empty lines; export the log again")
@@ -169,11 +293,6 @@ def _header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], lis
             "csv.skip_rows and csv.units_row in the mapping"
         )
     header = [cell.strip() for cell in top[0]]
-    if not header:
-        raise LogError(
-            f"{path.name}: the header is an empty line; set csv.skip_rows in a mapping to the "
-            "number of lines above it"
-        )
     check_names(path, len(header), max(map(len, header), default=0))
     mark = next((mark for mark in ";\t," if mark in header[0]), None)
     if len(header) == 1 and mark:
@@ -183,9 +302,31 @@ def _header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], lis
             "by commas and decimals by points: export it so, or write a mapping with "
             f'csv = {{ delimiter = "{shown}", decimal = "{decimal}" }}'
         )
+    if all(map(_is_number, header)):
+        raise LogError(
+            f"{path.name}: the header holds numbers alone, as where there is none; write a mapping "
+            "with csv = { header = false }, in which columns are named column_1, column_2, ..."
+        )
     units = [cell.strip().strip("[]()") for cell in top[1]] if layout.units_row else []
     units += [""] * (len(header) - len(units))
     return header, units[: len(header)]
+
+
+def _without_header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], list[str]]:
+    """Return names by number; the rows begin after the lines that are skipped."""
+    first = next(iter(rows), None)
+    if first is None:
+        raise LogError(f"{path.name}: the file holds only empty lines; export the log again")
+    rows.lines_taken = layout.skip_rows
+    return [f"column_{place}" for place in range(1, len(first) + 1)], [""] * len(first)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True
 
 
 def _blocks(path: Path, rows: _Rows, count: int, at_once: int) -> Iterator[list[list[str]]]:
@@ -228,10 +369,10 @@ class _Column:
         self.reason = f"row {begin + place + 1}: {why}"
         self.numbers = array("d")
 
-    def give(self) -> np.ndarray:
+    def give(self) -> Array:
         """Return the numbers, and hold them no longer."""
         given, self.numbers = self.numbers, array("d")
-        return frozen(np.frombuffer(given))
+        return np.array(np.frombuffer(given))
 
     def _pointed(self, cell: str) -> str:
         """Give a cell with a point for its decimal mark; the other mark makes it no number."""
@@ -248,9 +389,11 @@ class _Column:
             reason = "not finite"
         if math.isfinite(value):
             return ""
+        other = "," if self.decimal == "." else "."
+        thousands = f" (or {other!r} stands between thousands)" if other in cell else ""
         return (
-            f"{cell[:40]!r} is {reason}; it must be a finite number such as -1{self.decimal}5e-3: "
-            "cut the row out, or export the log again"
+            f"{cell[:40]!r} is {reason}{thousands}; it must be a finite number such as "
+            f"-1{self.decimal}5e-3: cut the row out, or export the log again"
         )
 
 

@@ -18,8 +18,8 @@ def is_emps(raw: RawFile) -> bool:
     return all(name in raw for name in REQUIRED)
 
 
-def emps_layout(raw: RawFile) -> tuple[RawFile, Mapping]:
-    """Return the channels and the mapping of a log of the Electro-Mechanical Positioning System.
+def emps_layout(raw: RawFile) -> Mapping:
+    """Return the mapping of a log of the Electro-Mechanical Positioning System.
 
     ::
 
@@ -58,6 +58,6 @@ def emps_layout(raw: RawFile) -> tuple[RawFile, Mapping]:
     if "qg" in raw:
         channels["reference_m"] = {"from": "qg", "unit": "m"}
     time = {"from": "t", "unit": "s"}
-    rest = {name: found for name, found in raw.channels.items() if name != "gtau"}
-    mapping = parse_mapping({"channels": channels, "time": time}, raw.path.name)
-    return RawFile(raw.path, rest, raw.unreadable, ("force_n = gtau * vir (EMPS)",)), mapping
+    raw.listed.pop("gtau")
+    raw.history = ("force_n = gtau * vir (EMPS)",)
+    return parse_mapping({"channels": channels, "time": time}, raw.path.name)

@@ -11,6 +11,10 @@ gap                a step exceeds 2.5 median steps: at least two samples are mis
 jitter             a step, no gap, deviates by more than 1 % from the median step
 constant           all values are equal
 quantization       the values are multiples of a step, see `quantum`
+unit               the mapping's unit is not the one that the file states
+cut_off            the recording ends within a piece that was not finished
+invalid            samples that the file marks as invalid are left out
+blank              blank lines are left out
 saturation         at least 5 samples in a row equal the largest or smallest value, and steps of
                    more than 2 quanta lead there and away
 =================  ===============================================================================
@@ -41,6 +45,10 @@ Kind = Literal[
     "saturation",
     "quantization",
     "constant",
+    "unit",
+    "cut_off",
+    "invalid",
+    "blank",
 ]
 
 GAP = 2.5
@@ -70,9 +78,10 @@ class Finding:
     kind : str
         One of the kinds in the table of `breakaway.measure.logs.findings`.
     channel : str
-        The channel, or ``t_s`` for stamps that all channels share.
+        The channel, or ``t_s`` for stamps that all channels share; its name in the file where it is
+        about the file, empty for the file as a whole.
     first_t_s : float
-        Stamp of the first sample concerned; of a gap, the last sample before it.
+        Stamp of the first sample concerned; of a gap, the last sample before it; 0 for the file.
     count : int
         How many gaps, steps, stamps or samples; of a quantization, how many levels.
     message : str

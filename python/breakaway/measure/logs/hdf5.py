@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,15 @@ from breakaway.base.reading import open_regular
 from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.hdf5_types import is_opaque
-from breakaway.measure.logs.raw import DEFLATE_RATIO, RawFile, check_claim, guarded, need, no_vector
+from breakaway.measure.logs.raw import (
+    DEFLATE_RATIO,
+    Listed,
+    RawFile,
+    check_claim,
+    guarded,
+    need,
+    no_vector,
+)
 
 DEEPEST_GROUP = 8
 MOST_OBJECTS = 10_000
@@ -29,6 +37,11 @@ FILTERS = {DEFLATE: DEFLATE_RATIO, SHUFFLE: 1, FLETCHER: 1, LZF: 88}
 """Filter that is read -> the most that it compresses. HDF5 would load the code of one that it does
 not know from a folder of plugins."""
 
+PACKING = ("scale_factor", "add_offset", "_FillValue", "missing_value")
+"""Attributes of packed numbers, and of what stands for none."""
+
+NONE = np.zeros(0, dtype=np.intp)
+
 CHECKSUM = 4
 """Bytes that Fletcher 32 adds to a chunk."""
 
@@ -37,20 +50,24 @@ MATLAB_PLACES = ("#refs#", "#subsystem#")
 
 
 @dataclass(frozen=True)
-class _Wanted:
-    """An array to read, or some members of a table."""
+class _Array:
+    """An array that can be read, or one member of a table; how its numbers were packed."""
 
-    name: str
     dataset: Any
-    members: tuple[str, ...] = ()
+    member: str = ""
+    factor: float = 1.0
+    offset: float = 0.0
+    missing: tuple[float, ...] = ()
+    """What stands for no value, among the packed numbers."""
 
 
 @guarded("an HDF5 file")
-def read_hdf5(path: Path, budget: Budget) -> RawFile:
-    """Read the one-dimensional arrays of an HDF5 file, whose names are their paths.
+def open_hdf5(path: Path, budget: Budget) -> Generator[RawFile, None, None]:
+    """Open an HDF5 file, whose channels are its one-dimensional arrays by their paths.
 
     The unit of an array is taken from its attribute ``unit`` or ``units``. The members of a
-    table are channels. No other file is opened: neither links, nor virtual arrays, nor external
+    table are channels. Numbers that are packed by ``scale_factor`` and ``add_offset``, as in
+    netCDF, are unpacked. No other file is opened: neither links, nor virtual arrays, nor external
     storage, nor plugins for filters are followed.
 
     Parameters
@@ -66,31 +83,70 @@ def read_hdf5(path: Path, budget: Budget) -> RawFile:
         h5py is missing, the file is damaged, or takes more than it may.
 
     """
-    return _read(path, budget, "/")
+    yield from _open(path, budget, "/")
 
 
 @guarded("a MATLAB 7.3 file")
-def read_matlab_hdf5(path: Path, budget: Budget) -> RawFile:
-    """Read a MATLAB 7.3 file, in which a point joins a structure and its field."""
-    return _read(path, budget, ".")
+def open_matlab_hdf5(path: Path, budget: Budget) -> Generator[RawFile, None, None]:
+    """Open a MATLAB 7.3 file, in which a point joins a structure and its field."""
+    yield from _open(path, budget, ".")
 
 
-def _read(path: Path, budget: Budget, separator: str) -> RawFile:
+def _open(path: Path, budget: Budget, separator: str) -> Generator[RawFile, None, None]:
     h5py = need("h5py", "h5py", "hdf5", path, "HDF5")
     raw = RawFile(path)
     with open_regular(path) as stream, h5py.File(stream, "r") as file:
-        wanted = []
+        arrays: dict[str, _Array] = {}
         for name, dataset in _datasets(h5py, raw, file, separator):
             reason = _elsewhere(dataset) or _no_numbers(h5py, dataset) or _unwritten(dataset)
             if reason:
                 raw.refuse(name, reason)
             else:
-                wanted += _wanted(raw, name, dataset, separator)
-        for one in wanted:
-            _ask(raw.path, budget, one)
-        for one in wanted:
-            _add(h5py, raw, one, separator)
-    return raw
+                _list(h5py, raw, arrays, name, dataset, separator)
+
+        def read(wanted: list[str]) -> None:
+            for name in wanted:
+                _ask(raw.path, budget, name, arrays[name])
+            for name in wanted:
+                _read(raw, name, arrays[name])
+
+        raw.read = read
+        yield raw
+
+
+def _list(
+    h5py: Any,  # noqa: ANN401
+    raw: RawFile,
+    arrays: dict[str, _Array],
+    name: str,
+    dataset: Any,  # noqa: ANN401
+    separator: str,
+) -> None:
+    """List an array, or the members of a table."""
+    fields = dataset.dtype.fields
+    if fields is None:
+        unit = _attribute(h5py, dataset, "unit") or _attribute(h5py, dataset, "units")
+        raw.list(name, Listed(unit, str(dataset.dtype), dataset.size))
+        arrays[name] = _packed(h5py, dataset)
+        return
+    for member, (kind, *_) in fields.items():
+        full = name + separator + member
+        if reason := no_vector(kind, (1,)):
+            raw.refuse(full, reason)
+        else:
+            raw.list(full, Listed("", str(kind), dataset.size))
+            arrays[full] = _Array(dataset, member)
+
+
+def _packed(h5py: Any, dataset: Any) -> _Array:  # noqa: ANN401
+    """Return an array with what its attributes say of how its numbers were packed.
+
+    Source: NetCDF Climate and Forecast Metadata Conventions, packed data and missing data.
+    """
+    named = {one: _numbers(h5py, dataset, one) for one in PACKING}
+    (factor,) = named["scale_factor"][:1] or (1.0,)
+    (offset,) = named["add_offset"][:1] or (0.0,)
+    return _Array(dataset, "", factor, offset, (*named["_FillValue"], *named["missing_value"]))
 
 
 def _datasets(h5py: Any, raw: RawFile, root: Any, separator: str) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
@@ -189,30 +245,16 @@ def _unwritten(dataset: Any) -> str:  # noqa: ANN401
     )
 
 
-def _wanted(raw: RawFile, name: str, dataset: Any, separator: str) -> list[_Wanted]:  # noqa: ANN401
-    """Return what to read of an array: itself, or the members of a table that are numbers."""
-    fields = dataset.dtype.fields
-    if fields is None:
-        return [_Wanted(name, dataset)]
-    members = []
-    for member, (kind, *_) in fields.items():
-        if reason := no_vector(kind, (1,)):
-            raw.refuse(name + separator + member, reason)
-        else:
-            members.append(member)
-    return [_Wanted(name, dataset, tuple(members))] if members else []
-
-
-def _ask(path: Path, budget: Budget, one: _Wanted) -> None:
+def _ask(path: Path, budget: Budget, name: str, one: _Array) -> None:
     """Ask for the memory of an array, which the file must be able to hold."""
     dataset = one.dataset
     claimed = dataset.size * dataset.dtype.itemsize
     ratio = math.prod(FILTERS[number] for number in _filters(dataset))
-    check_claim(path, f"'{one.name}'", claimed, ratio * dataset.id.get_storage_size())
+    check_claim(path, f"'{name}'", claimed, ratio * dataset.id.get_storage_size())
     passing = 0 if dataset.dtype == np.float64 else claimed
     if dataset.chunks is not None:
-        passing += _chunk_bytes(path, one.name, dataset)
-    budget.take(f"'{one.name}'", 8 * dataset.size * max(len(one.members), 1), passing)
+        passing += _chunk_bytes(path, name, dataset)
+    budget.take(f"'{name}'", 8 * dataset.size, passing)
 
 
 def _chunk_bytes(path: Path, name: str, dataset: Any) -> int:  # noqa: ANN401
@@ -239,14 +281,33 @@ def _chunk_bytes(path: Path, name: str, dataset: Any) -> int:  # noqa: ANN401
     return max(most, largest * FILTERS[LZF] if LZF in filters else largest)
 
 
-def _add(h5py: Any, raw: RawFile, one: _Wanted, separator: str) -> None:  # noqa: ANN401
-    if one.members:
-        table = one.dataset.fields(list(one.members))[()]
-        for member in one.members:
-            raw.add(one.name + separator + member, table[member], None)
+def _read(raw: RawFile, name: str, one: _Array) -> None:
+    if one.member:
+        raw.add(name, one.dataset.fields([one.member])[()][one.member], None)
         return
-    unit = _attribute(h5py, one.dataset, "unit") or _attribute(h5py, one.dataset, "units")
-    raw.add(one.name, one.dataset[()], None, unit)
+    values = one.dataset[()]
+    lacking = np.flatnonzero(np.isin(values, one.missing)) if one.missing else NONE
+    if lacking.size:
+        raw.give_up(
+            name,
+            f"row {lacking[0] + 1}: is missing, as _FillValue or missing_value says, and so are "
+            f"{lacking.size - 1} others; every row must have a value: cut these rows out",
+        )
+    elif (one.factor, one.offset) == (1.0, 0.0):
+        raw.add(name, values, None)
+    else:
+        raw.add(name, one.factor * values + one.offset, None)
+
+
+def _numbers(h5py: Any, dataset: Any, name: str) -> tuple[float, ...]:  # noqa: ANN401
+    """Return the finite numbers of an attribute, none where it has others or is missing."""
+    if name not in dataset.attrs or is_opaque(h5py, dataset.attrs.get_id(name).get_type()):
+        return ()
+    try:
+        values = np.asarray(dataset.attrs[name], dtype=np.float64).reshape(-1)
+    except (TypeError, ValueError):
+        return ()
+    return tuple(values[np.isfinite(values)].tolist())
 
 
 def _attribute(h5py: Any, dataset: Any, name: str) -> str:  # noqa: ANN401

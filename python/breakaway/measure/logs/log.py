@@ -58,6 +58,8 @@ class Log(OneLine):
         Columns of the file that were not read.
     history : tuple of str
         What was done to the numbers of the file, in order.
+    noticed : iterable of Finding, optional
+        What was odd about the file; `findings` begins with it.
 
     Attributes
     ----------
@@ -94,6 +96,7 @@ class Log(OneLine):
     sha256: str | None
     ignored_columns: tuple[str, ...]
     history: tuple[str, ...]
+    noticed: tuple[Finding, ...]
 
     def __init__(
         self,
@@ -108,13 +111,14 @@ class Log(OneLine):
         sha256: str | None = None,
         ignored_columns: Iterable[str] = (),
         history: Iterable[str] = (),
+        noticed: Iterable[Finding] = (),
     ) -> None:
         check_arguments(Log.__init__, locals(), LogError)
         named_arrays = (position_m, force_n, reference_m, velocity_m_per_s)
         given = {name: a for name, a in zip(MOTION, named_arrays, strict=True) if a is not None}
         with named("log" if source is None else source.name):
             built = _built(t_s, given, channels or {})
-        self._fill(built, source, sha256, ignored_columns, history)
+        self._fill(built, source, sha256, ignored_columns, history, noticed)
 
     @classmethod
     def from_channels(
@@ -125,6 +129,7 @@ class Log(OneLine):
         sha256: str | None = None,
         ignored_columns: Iterable[str] = (),
         history: Iterable[str] = (),
+        noticed: Iterable[Finding] = (),
     ) -> Log:
         """Build a log of channels that may have different time stamps.
 
@@ -140,6 +145,8 @@ class Log(OneLine):
             Columns of the file that were not read.
         history : iterable of str
             What was done so far.
+        noticed : iterable of Finding
+            What was odd about the file.
 
         Raises
         ------
@@ -159,7 +166,7 @@ class Log(OneLine):
         """
         check_arguments(Log.from_channels, locals(), LogError)
         log = cls.__new__(cls)
-        log._fill(channels, source, sha256, ignored_columns, history)
+        log._fill(channels, source, sha256, ignored_columns, history, noticed)
         return log
 
     def _fill(
@@ -169,6 +176,7 @@ class Log(OneLine):
         sha256: str | None,
         ignored_columns: Iterable[str],
         history: Iterable[str],
+        noticed: Iterable[Finding],
     ) -> None:
         found: dict[str, Channel] = {}
         with named("log" if source is None else source.name):
@@ -184,6 +192,7 @@ class Log(OneLine):
         object.__setattr__(self, "sha256", sha256)
         object.__setattr__(self, "ignored_columns", tuple(ignored_columns))
         object.__setattr__(self, "history", tuple(history))
+        object.__setattr__(self, "noticed", tuple(noticed))
 
     def __repr__(self) -> str:
         channels = ", ".join(
@@ -256,7 +265,7 @@ class Log(OneLine):
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What is odd about the stamps and values; see `breakaway.measure.logs.findings`."""
-        return find(self.channels.values())
+        return (*self.noticed, *find(self.channels.values()))
 
     def __getitem__(self, name: str) -> Array:
         """Return the values of a channel; `channels` gives its stamps."""
@@ -423,6 +432,7 @@ class Log(OneLine):
             sha256=self.sha256,
             ignored_columns=self.ignored_columns,
             history=(*self.history, *notes),
+            noticed=self.noticed,
         )
 
     @cached_property

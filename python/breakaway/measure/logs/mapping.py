@@ -57,8 +57,14 @@ class CsvMapping(Model):
     skip_rows: Annotated[int, Field(ge=0)] = 0
     """Lines above the header."""
 
+    header: bool = True
+    """Whether there is a header; without one columns are named ``column_1`` and so on."""
+
     units_row: bool = False
     """Whether the row below the header holds the units."""
+
+    encoding: Literal["utf-8", "cp1252", "latin-1", "utf-16"] | None = None
+    """Encoding of the text; by default what its first bytes tell for certain, else UTF-8."""
 
 
 class Mapping(Model):

@@ -65,7 +65,7 @@ def decode(raw: RawFile, stream: BinaryIO, budget: Budget) -> None:
         stream.seek(matrix.place)
         content = stream.read(matrix.count * matrix.dtype.itemsize)
         numbers = np.frombuffer(content, matrix.dtype)
-        raw.add(matrix.name, numbers.reshape(matrix.shape, order="F"), None)
+        raw.give(matrix.name, numbers.reshape(matrix.shape, order="F"), None)
 
 
 def _matrices(stream: BinaryIO) -> list[_Matrix]:

@@ -154,7 +154,7 @@ def _add_matrix(
 ) -> None:
     """Add a matrix; its own name counts unless it is a field, which has the name given."""
     if not len(content):  # an empty field
-        raw.add(name, np.zeros(0), None)
+        raw.give(name, np.zeros(0), None)
         return
     parts = _elements(content, order)
     flags = int(_numbers(next(parts), order)[0])
@@ -178,7 +178,7 @@ def _add_matrix(
     else:
         numbers = _numbers(next(parts), order)
         budget.take(f"'{name}'", 8 * numbers.size, len(content))
-        raw.add(name, numbers.reshape(shape, order="F"), None)
+        raw.give(name, numbers.reshape(shape, order="F"), None)
 
 
 def _add_fields(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from array import array
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,8 @@ from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.mcap_records import Message, messages
 from breakaway.measure.logs.raw import LONGEST_NAME, RawFile, check_names, guarded
 
-BYTES_PER_NUMBER = 18
-"""A number and its stamp, and the room that they keep to grow."""
+BYTES_PER_NUMBER = 27
+"""A number and its two stamps, and the room that they keep to grow."""
 
 BYTES_PER_JSON_BYTE = 40
 """Most memory that a byte of JSON takes as objects: {} in lists take 70 bytes for 3."""
@@ -25,18 +26,20 @@ BYTES_PER_JSON_BYTE = 40
 
 @dataclass
 class _Field:
-    """The numbers of a field so far, and their stamps in ns."""
+    """The numbers of a field so far, and when they were published and logged, in ns."""
 
-    stamps: array[int] = field(default_factory=lambda: array("Q"))
+    published: array[int] = field(default_factory=lambda: array("Q"))
+    logged: array[int] = field(default_factory=lambda: array("Q"))
     values: array[float] = field(default_factory=lambda: array("d"))
 
 
 @guarded("an MCAP file")
-def read_mcap(path: Path, budget: Budget) -> RawFile:
-    """Read the numbers in the JSON messages of an MCAP file.
+def open_mcap(path: Path, budget: Budget) -> Generator[RawFile, None, None]:
+    """Open an MCAP file, whose channels are the numbers in its JSON messages.
 
     Their names are ``topic/field``, or ``topic/field.member`` for nested ones. The stamps are
-    the times of publishing (of logging where these are 0), in s after the first message.
+    the times of publishing, in s after the first message; those of logging where a message of the
+    field has none, 0, because clocks are not mixed within a channel.
 
     Raises
     ------
@@ -57,14 +60,15 @@ def read_mcap(path: Path, budget: Budget) -> RawFile:
             budget.take("its messages", BYTES_PER_NUMBER * len(numbers))
             for key, value in numbers:
                 one = fields.setdefault(f"{name}/{key}" if key else name, _Field())
-                one.stamps.append(message.stamp_ns)
+                one.published.append(message.published_ns)
+                one.logged.append(message.logged_ns)
                 one.values.append(value)
             check_names(path, len(fields) + len(raw.unreadable))
     if raw.unreadable and not fields:
         name, reason = next(iter(raw.unreadable.items()))
         raise LogError(f"{path.name}: topic '{name}': {reason}; convert them, or export as CSV")
     _add(raw, fields)
-    return raw
+    yield raw
 
 
 def _numbers(path: Path, budget: Budget, name: str, message: Message) -> list[tuple[str, float]]:
@@ -95,8 +99,15 @@ def _collect(found: list[tuple[str, float]], name: str, value: Any) -> None:  # 
 
 
 def _add(raw: RawFile, fields: dict[str, _Field]) -> None:
-    zero = min((one.stamps[0] for one in fields.values()), default=0)
+    stamps = {name: _stamps(one) for name, one in fields.items()}
+    zero = min((int(one[0]) for one in stamps.values()), default=0)
     for name, one in fields.items():
-        stamps = np.frombuffer(one.stamps, np.uint64)
-        after = (stamps - np.uint64(zero)).view(np.int64)  # wraps around to what is negative
-        raw.add(name, np.frombuffer(one.values), 1e-9 * after.astype(np.float64))
+        # Whole numbers, which wrap around to what is negative.
+        after = (stamps[name] - np.uint64(zero)).view(np.int64)
+        raw.give(name, np.frombuffer(one.values), 1e-9 * after.astype(np.float64))
+
+
+def _stamps(one: _Field) -> np.ndarray:
+    """Return the stamps of a field by one clock for all of them."""
+    published = np.frombuffer(one.published, np.uint64)
+    return published if published.all() else np.frombuffer(one.logged, np.uint64)

@@ -35,10 +35,11 @@ class Topic:
 
 @dataclass(frozen=True)
 class Message:
-    """A message, with its time of publishing (of logging where this is 0) in ns."""
+    """A message, with its times of publishing, 0 for none, and of logging in ns."""
 
     topic: Topic
-    stamp_ns: int
+    published_ns: int
+    logged_ns: int
     data: memoryview
 
 
@@ -64,7 +65,7 @@ def messages(stream: BinaryIO, budget: Budget) -> Iterator[Message]:
                 topics[number] = topic
             elif one == MESSAGE:
                 number, _, logged, published = struct.unpack_from("<HIQQ", body)
-                yield Message(topics[number], published or logged, body[22:])
+                yield Message(topics[number], published, logged, body[22:])
 
 
 def _records(stream: BinaryIO, budget: Budget) -> Iterator[tuple[int, memoryview]]:

@@ -70,7 +70,7 @@ def read_headers(raw: RawFile) -> list[Stated]:
 
 def file_unit(raw: RawFile, name: str) -> str:
     """Return the unit that the file itself states for a channel, or nothing."""
-    return raw.channels[name].unit if name in raw.channels else ""
+    return raw.listed[name].unit if name in raw.listed else ""
 
 
 def read_header(name: str, unit: str = "") -> Stated | None:
@@ -101,7 +101,7 @@ def read_header(name: str, unit: str = "") -> Stated | None:
 
 def _splits(name: str) -> list[tuple[str, str]]:
     """Return the ways to split a name into what it is and its unit, the longest unit first."""
-    text, symbol = _bracketed(name)
+    text, symbol = _bracketed(re.sub(r"#\d+$", "", name))
     cased = re.split(r"[\s_.\-]+", re.split(r"[/.\\]", text.strip())[-1])
     parts = [part.lower() for part in cased]
     if symbol is not None:

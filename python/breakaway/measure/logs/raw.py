@@ -9,8 +9,8 @@ import logging
 import math
 import sys
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager, redirect_stdout
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from breakaway.base.text import brief
 from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
+from breakaway.measure.logs.findings import Finding, Kind
 
 DEFLATE_RATIO = 1032
 """The most that zlib compresses; a file that claims more numbers than this allows is damaged."""
@@ -28,59 +30,128 @@ DEFLATE_RATIO = 1032
 MOST_NAMES = 16_384
 """Most channels of a file, those that cannot be read included; as many as a spreadsheet has."""
 
+EXACT = 2**53
+"""Integers up to this are exact as float64."""
+
 LONGEST_NAME = 1000
 """Most characters of the name of a channel."""
 
 
 @dataclass(frozen=True, eq=False)
 class RawChannel:
-    """The numbers of a channel as they are in a file, with its own time stamps if it has them."""
+    """The numbers of a channel as they are in a file, with its own time stamps if it has them.
 
-    values: Array
+    ``values`` are float64, or int64 where float64 would round them, as it does stamps in ns.
+    """
+
+    values: npt.NDArray[Any]
     t_s: Array | None = None
+
+
+@dataclass(frozen=True)
+class Listed:
+    """What a file says of a channel before its values are read.
+
+    Parameters
+    ----------
+    unit : str
+        The unit that the file states, empty for none.
+    kind : str
+        The type of its numbers there.
+    count : int, optional
+        How many, where that is known without reading them.
+    rate_hz, start_s : float, optional
+        Rate and first stamp of stamps of its own, where the file states them.
+
+    """
+
     unit: str = ""
+    kind: str = ""
+    count: int | None = None
+    rate_hz: float | None = None
+    start_s: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class RawFile:
-    """The channels of a file by their names there.
+    """The channels of an open file by their names there, and the values of those that were loaded.
 
     ``unreadable`` says why a channel cannot be read; this matters only if it is wanted.
+    ``findings`` say what is odd about the file.
     """
 
     path: Path
+    listed: dict[str, Listed] = field(default_factory=dict)
     channels: dict[str, RawChannel] = field(default_factory=dict)
     unreadable: dict[str, str] = field(default_factory=dict)
     history: tuple[str, ...] = ()
+    findings: list[Finding] = field(default_factory=list)
+    read: Callable[[list[str]], None] = lambda _: None
+    """Reads channels that are listed, by `add` or `refuse` for each."""
 
     @property
     def names(self) -> list[str]:
         """All names in the file."""
-        return [*self.channels, *(name for name in self.unreadable if name not in self.channels)]
+        return [*self.listed, *(name for name in self.unreadable if name not in self.listed)]
 
     def __contains__(self, name: str) -> bool:
-        return name in self.channels or name in self.unreadable
+        return name in self.listed or name in self.unreadable
 
-    def add(self, name: str, values: npt.ArrayLike, t_s: Array | None, unit: str = "") -> None:
-        """Add a channel, or note why it is none; an array of its own is taken over, not copied."""
+    def list(self, name: str, listed: Listed) -> None:
+        """Note a channel that can be loaded; of several of one name none can."""
         if name in self:
             self.refuse(name, "")
             return
-        array = np.asarray(values)
-        if reason := no_vector(array.dtype, array.shape):
-            self.refuse(name, reason)
-            return
         self._check_name(name)
-        stamps = None if t_s is None else frozen(t_s)
-        self.channels[name] = RawChannel(frozen(array), stamps, unit)
+        self.listed[name] = listed
 
-    def refuse(self, name: str, reason: str) -> None:
-        """Note why a channel cannot be read."""
+    def load(self, wanted: Iterable[str]) -> None:
+        """Read channels that are listed and not read yet."""
+        missing = [name for name in dict.fromkeys(wanted) if name in self.listed]
+        missing = [n for n in missing if n not in self.channels and n not in self.unreadable]
+        if missing:
+            self.read(missing)
+
+    def give(self, name: str, values: npt.ArrayLike, t_s: Array | None, unit: str = "") -> None:
+        """List a channel that is read already, or note why it is none."""
+        array = np.asarray(values)
         if name in self:
             self.channels.pop(name, None)
+        elif reason := no_vector(array.dtype, array.shape):
+            self.refuse(name, reason)
+            return
+        self.list(name, Listed(unit, str(array.dtype), array.size))
+        if name in self.listed:
+            self.add(name, array, t_s)
+
+    def add(self, name: str, values: npt.ArrayLike, t_s: Array | None) -> None:
+        """Keep what was read of a channel; an array of its own is taken over, not copied."""
+        array = np.asarray(values)
+        if reason := no_vector(array.dtype, array.shape):
+            self.give_up(name, reason)
+            return
+        stamps = None if t_s is None else frozen(t_s)
+        values = whole(array) if rounds(array) else frozen(array)
+        self.channels[name] = RawChannel(values, stamps)
+
+    def notice(self, kind: Kind, name: str, count: int, message: str) -> None:
+        """Note what is odd about a channel, or about the file where the name is empty."""
+        about = f"'{brief(name)}': {message}" if name else message
+        self.findings.append(Finding(kind, name, 0.0, count, about))
+
+    def give_up(self, name: str, reason: str) -> None:
+        """Note why the values of a channel that is listed cannot be read."""
+        self.unreadable[name] = reason
+
+    def refuse(self, name: str, reason: str, unit: str = "") -> None:
+        """Note why a channel cannot be read; its unit says which one it is all the same."""
+        if name in self:
+            self.listed.pop(name, None)
             reason = "there are several of this name; rename all but one"
         self._check_name(name)
         self.unreadable[name] = reason
+        if unit:
+            self.listed[name] = Listed(unit)
 
     def _check_name(self, name: str) -> None:
         """Refuse a file with a name too long, or with too many.
@@ -91,7 +162,7 @@ class RawFile:
             It goes beyond `LONGEST_NAME` or `MOST_NAMES`.
 
         """
-        check_names(self.path, len(self.channels) + len(self.unreadable), len(name))
+        check_names(self.path, len(self.listed) + len(self.unreadable), len(name))
 
 
 def no_vector(kind: np.dtype[Any], shape: tuple[int, ...]) -> str:
@@ -102,6 +173,21 @@ def no_vector(kind: np.dtype[Any], shape: tuple[int, ...]) -> str:
     if size == 0 or max(shape, default=1) != size:
         return f"is an array of shape {shape}; it must be a vector of real numbers"
     return ""
+
+
+def rounds(array: npt.NDArray[Any]) -> bool:
+    """Whether float64 would round the integers of an array, which int64 holds."""
+    if array.dtype.kind not in "iu" or array.dtype.itemsize < 8:
+        return False
+    low, high = int(array.min()), int(array.max())
+    return max(-low, high) > EXACT and high < 2**63
+
+
+def whole(array: npt.NDArray[Any]) -> npt.NDArray[np.int64]:
+    """Return a read-only vector of integers."""
+    flat = array.reshape(-1).astype(np.int64)
+    flat.setflags(write=False)
+    return flat
 
 
 def frozen(array: npt.NDArray[Any]) -> Array:
@@ -133,7 +219,9 @@ def check_names(path: Path, count: int, longest: int = 0) -> None:
         )
 
 
-Reader = Callable[[Path, Budget], RawFile]
+Opening = Callable[[Path, Budget], Generator[RawFile, None, None]]
+Opener = Callable[[Path, Budget], AbstractContextManager[RawFile]]
+"""Opens a file, lists its channels, and reads them on request until it is closed."""
 
 
 def need(module: str, package: str, extra: str, path: Path, what: str) -> Any:  # noqa: ANN401
@@ -147,27 +235,52 @@ def need(module: str, package: str, extra: str, path: Path, what: str) -> Any:  
         ) from None
 
 
-def guarded(what: str) -> Callable[[Reader], Reader]:
-    """Turn whatever a file library raises in a reader into a `LogError`, and keep it quiet."""
+def guarded(what: str) -> Callable[[Opening], Opener]:
+    """Turn whatever a file library raises into a `LogError`, and keep it quiet.
 
-    def guard(reader: Reader) -> Reader:
-        @functools.wraps(reader)
-        def read(path: Path, budget: Budget) -> RawFile:
-            with _quiet():
-                try:
-                    return reader(path, budget)
-                except LogError:
-                    raise
-                except Exception as error:  # a damaged file raises dozens of unrelated types
-                    reason = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
-            raise LogError(
-                f"{path.name}: is damaged, or is not {what} ({reason}); export the log again, or "
-                "name another format"
-            )
+    It stands before a generator that gives the open file once.
+    """
 
-        return read
+    def guard(opened: Opening) -> Opener:
+        @contextmanager
+        @functools.wraps(opened)
+        def opener(path: Path, budget: Budget) -> Iterator[RawFile]:
+            steps = opened(path, budget)
+            with _as_log_error(path, what):
+                raw = next(steps)
+            unguarded = raw.read
+
+            def read(wanted: list[str]) -> None:
+                with _as_log_error(path, what):
+                    unguarded(wanted)
+
+            raw.read = read
+            try:
+                yield raw
+            finally:
+                with _quiet():
+                    steps.close()
+
+        return opener
 
     return guard
+
+
+@contextmanager
+def _as_log_error(path: Path, what: str) -> Iterator[None]:
+    with _quiet():
+        try:
+            yield
+        except LogError:
+            raise
+        except Exception as error:  # a damaged file raises dozens of unrelated types
+            reason = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+        else:
+            return
+    raise LogError(
+        f"{path.name}: is damaged, or is not {what} ({reason}); export the log again, or "
+        "name another format"
+    )
 
 
 @contextmanager

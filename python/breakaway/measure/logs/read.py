@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping as Keys
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -10,37 +11,37 @@ from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.logs.assemble import assemble
 from breakaway.measure.logs.budget import Budget
-from breakaway.measure.logs.csv import read_csv
+from breakaway.measure.logs.csv import open_csv
 from breakaway.measure.logs.detect import detect
 from breakaway.measure.logs.digest import digested
 from breakaway.measure.logs.emps import emps_layout, is_emps
-from breakaway.measure.logs.hdf5 import read_hdf5
+from breakaway.measure.logs.hdf5 import open_hdf5
 from breakaway.measure.logs.log import Log
-from breakaway.measure.logs.mapping import load_mapping
-from breakaway.measure.logs.mat import read_mat
-from breakaway.measure.logs.mcap import read_mcap
-from breakaway.measure.logs.mdf import read_mdf
-from breakaway.measure.logs.parquet import read_parquet
-from breakaway.measure.logs.raw import Reader
-from breakaway.measure.logs.tdms import read_tdms
+from breakaway.measure.logs.mapping import Mapping, load_mapping
+from breakaway.measure.logs.mat import open_mat
+from breakaway.measure.logs.mcap import open_mcap
+from breakaway.measure.logs.mdf import open_mdf
+from breakaway.measure.logs.parquet import open_parquet
+from breakaway.measure.logs.raw import Opener, RawFile
+from breakaway.measure.logs.tdms import open_tdms
 
-READERS: dict[str, Reader] = {
-    "parquet": read_parquet,
-    "mat": read_mat,
-    "hdf5": read_hdf5,
-    "tdms": read_tdms,
-    "mdf": read_mdf,
-    "mcap": read_mcap,
-    "emps": read_mat,
+OPENERS: dict[str, Opener] = {
+    "parquet": open_parquet,
+    "mat": open_mat,
+    "hdf5": open_hdf5,
+    "tdms": open_tdms,
+    "mdf": open_mdf,
+    "mcap": open_mcap,
+    "emps": open_mat,
 }
 
-FORMATS = ("csv", *READERS)
+FORMATS = ("csv", *OPENERS)
 """Names of the file formats. ``emps`` is the MATLAB file of the EMPS benchmark."""
 
 
 def read_log(
     path: str | Path,
-    mapping: str | Path | Mapping[str, Any] | None = None,
+    mapping: str | Path | Keys[str, Any] | None = None,
     format: str | None = None,
     *,
     memory_bytes: float | None = None,
@@ -124,10 +125,24 @@ def read_log(
     with digested(path) as digest:
         rules, origin = load_mapping(mapping, path)
         kind = format or rules.format or detect(path)
-        if kind not in FORMATS:
-            raise LogError(f"format '{kind}' is unknown; it must be one of {', '.join(FORMATS)}")
-        raw = read_csv(path, budget, rules.csv) if kind == "csv" else READERS[kind](path, budget)
-    if kind == "emps" or (kind == "mat" and not rules.channels and is_emps(raw)):
-        return assemble(*emps_layout(raw), digest)
-    log = assemble(raw, rules, digest)
+        with open_log(path, kind, rules, budget) as raw:
+            if kind == "emps" or (kind == "mat" and not rules.channels and is_emps(raw)):
+                rules, origin = emps_layout(raw), ""
+            log = assemble(raw, rules, digest)
     return log.noted(f"channels as {origin} says") if origin else log
+
+
+def open_log(
+    path: Path, kind: str, rules: Mapping, budget: Budget
+) -> AbstractContextManager[RawFile]:
+    """Open a log file of a format.
+
+    Raises
+    ------
+    LogError
+        There is no such format, or the file cannot be opened.
+
+    """
+    if kind not in FORMATS:
+        raise LogError(f"format '{kind}' is unknown; it must be one of {', '.join(FORMATS)}")
+    return open_csv(path, budget, rules.csv) if kind == "csv" else OPENERS[kind](path, budget)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-import struct
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 
 from breakaway.base.reading import open_regular
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
-from breakaway.measure.logs.raw import MOST_NAMES, RawFile, check_claim, check_names, guarded, need
+from breakaway.measure.logs.raw import Listed, RawFile, check_claim, check_names, guarded, need
+from breakaway.measure.logs.tdms_segments import Segments, read_segments
 
 MOST_SCALES = 8
 """Most scales of a channel: each may take two before it, so that n need 2ⁿ passes."""
@@ -32,18 +32,18 @@ SCALES = {
 }
 """Kinds of scales that npTDMS computes. Of any other it returns the raw counts."""
 
-LEAD_IN = struct.Struct("<4sI4xQ8x")
-HAS_OBJECTS, HAS_NEW_LIST, IS_BIG_ENDIAN = 1 << 1, 1 << 2, 1 << 6
-BYTES_PER_SEGMENT, BYTES_PER_ENTRY, LEAST_OBJECT = 500, 8, 12
+UNSET = np.datetime64("1904-01-02", "ns")
+"""A start before this was never set: LabVIEW writes its epoch, 1904, then."""
 
 
 @guarded("a TDMS file")
-def read_tdms(path: Path, budget: Budget) -> RawFile:
-    """Read the channels of a TDMS file, whose names are ``group/channel``.
+def open_tdms(path: Path, budget: Budget) -> Generator[RawFile, None, None]:
+    """Open a TDMS file, whose channels are named ``group/channel``.
 
     A channel with the properties of a waveform (``wf_increment``) has stamps of its own:
     ``wf_start_offset`` and so on in steps of ``wf_increment``, in s after the earliest
-    ``wf_start_time`` of the file. The unit is the property ``unit_string``.
+    ``wf_start_time`` of the file. A recording that was appended begins at its own start. The unit
+    is the property ``unit_string``.
 
     Raises
     ------
@@ -54,7 +54,10 @@ def read_tdms(path: Path, budget: Budget) -> RawFile:
     nptdms = need("nptdms", "npTDMS", "tdms", path, "TDMS")
     raw = RawFile(path)
     with open_regular(path) as stream:
-        _ask_for_segments(stream, budget)
+        segments = read_segments(stream, budget)
+        if segments.cut_off:
+            cut_off = "the recording is cut off within its last segment, as by a loss of power"
+            raw.notice("cut_off", "", 1, cut_off)
         with nptdms.TdmsFile.open(stream) as file:
             channels = {
                 f"{group.name}/{channel.name}": (group, channel)
@@ -63,57 +66,66 @@ def read_tdms(path: Path, budget: Budget) -> RawFile:
             }
             check_names(path, len(channels))
             for name, (group, channel) in channels.items():
-                _check(raw, budget, name, channel, (file, group, channel))
-            zero = _first_moment([channel for _, channel in channels.values()])
-            for name, (_, channel) in channels.items():
-                if name not in raw:
-                    unit = str(channel.properties.get("unit_string", ""))
-                    raw.add(name, channel[:], _stamps(channel, zero), unit)
-    return raw
+                _list(raw, name, channel, (file, group, channel), segments)
+            zero = _first_moment([channel for _, channel in channels.values()], segments)
+
+            def read(wanted: list[str]) -> None:
+                for name in wanted:
+                    _read(raw, budget, name, channels[name][1], segments, zero)
+
+            raw.read = read
+            yield raw
 
 
-def _ask_for_segments(stream: BinaryIO, budget: Budget) -> None:
-    """Ask for the memory of the lists of objects: npTDMS keeps one for each segment."""
-    end = stream.seek(0, 2)
-    place, count = 0, 0
-    while place + LEAD_IN.size <= end:
-        stream.seek(place)
-        tag, flags, length = LEAD_IN.unpack(stream.read(LEAD_IN.size))
-        if tag != b"TDSm":
-            raise ValueError(f"a segment begins with {tag!r}")
-        if flags & HAS_OBJECTS:
-            (told,) = struct.unpack(">I" if flags & IS_BIG_ENDIAN else "<I", stream.read(4))
-            if told * LEAST_OBJECT > end - place:
-                raise ValueError(f"a segment claims {told} objects")
-            # Those told may be new, or repeat others.
-            count = min(told + (0 if flags & HAS_NEW_LIST else count), 2 * MOST_NAMES)
-        budget.take("its segments", BYTES_PER_SEGMENT + BYTES_PER_ENTRY * count)
-        if flags & IS_BIG_ENDIAN:
-            length = int.from_bytes(length.to_bytes(8, "little"), "big")
-        place += LEAD_IN.size + length
-    stream.seek(0)
-
-
-def _check(
+def _list(
     raw: RawFile,
-    budget: Budget,
     name: str,
     channel: Any,  # noqa: ANN401 - npTDMS has no types
     levels: tuple[Any, ...],
+    segments: Segments,
 ) -> None:
-    """Note why a channel cannot be read, or ask for its memory."""
+    """List a channel, or note why it cannot be read."""
     # Before its type is asked for: npTDMS takes memory for as many scales as are claimed.
     reason = next((why for one in levels if (why := _no_scale(one.properties))), "")
     if not reason and channel.dtype.kind not in "fiub":
         reason = f"is of type {channel.dtype}; it must be real numbers"
+    units = segments.values_of(channel.path, "unit_string")
+    if not reason and len(units) > 1:
+        reason = (
+            f"changes its unit within the file, from {units[0]!r} to {units[1]!r}: export the "
+            "recordings apart"
+        )
+    unit = str(channel.properties.get("unit_string", ""))
     if reason:
-        raw.refuse(name, reason)
+        raw.refuse(name, reason, unit)
         return
+    step = float(channel.properties.get("wf_increment", 0.0))
+    rate_hz = 1.0 / step if step else None
+    raw.list(name, Listed(unit, str(channel.dtype), len(channel), rate_hz))
+
+
+def _read(
+    raw: RawFile,
+    budget: Budget,
+    name: str,
+    channel: Any,  # noqa: ANN401 - npTDMS has no types
+    segments: Segments,
+    zero: np.datetime64 | None,
+) -> None:
     size, file_bytes = channel.dtype.itemsize, raw.path.stat().st_size
     check_claim(raw.path, f"'{name}'", len(channel), file_bytes)
     stamps = 8 if "wf_increment" in channel.properties else 0
     # Its raw values, their scaled ones, and a piece of the file.
     budget.take(f"'{name}'", (8 + stamps) * len(channel), (8 + size) * len(channel) + file_bytes)
+    starts = segments.starts_of(channel.path)
+    if len(starts) > 1 and sum(count for _, _, count in starts) != len(channel):
+        raw.give_up(
+            name,
+            f"holds {len(starts)} recordings, each with a start of its own, and how many values "
+            "are of which cannot be told: export them apart",
+        )
+        return
+    raw.add(name, channel[:], _stamps(channel, starts, zero))
 
 
 def _no_scale(properties: Mapping[str, Any]) -> str:
@@ -137,19 +149,30 @@ def _no_scale(properties: Mapping[str, Any]) -> str:
     return ""
 
 
-def _first_moment(channels: list[Any]) -> np.datetime64 | None:
-    starts = [s for c in channels if (s := c.properties.get("wf_start_time")) is not None]
-    return min((np.datetime64(s, "ns") for s in starts), default=None)
+def _first_moment(channels: list[Any], segments: Segments) -> np.datetime64 | None:
+    """Return the earliest start of all recordings; a start that was never set counts as none."""
+    starts = [
+        moment
+        for channel in channels
+        for moment in segments.values_of(channel.path, "wf_start_time")
+        if moment > UNSET
+    ]
+    return min(starts, default=None)
 
 
-def _stamps(channel: Any, zero: np.datetime64 | None) -> Array | None:  # noqa: ANN401
-    """Return the stamps of a waveform, or None."""
+def _stamps(
+    channel: Any,  # noqa: ANN401 - npTDMS has no types
+    starts: list[tuple[np.datetime64 | None, float, int]],
+    zero: np.datetime64 | None,
+) -> Array | None:
+    """Return the stamps of a waveform, each recording from its own start; or None."""
     step = float(channel.properties.get("wf_increment", 0.0))
     if not step:
         return None
-    start = float(channel.properties.get("wf_start_offset", 0.0))
-    moment = channel.properties.get("wf_start_time")
-    if zero is not None and moment is not None:
-        late = np.datetime64(moment, "ns").astype(np.int64) - zero.astype(np.int64)
-        start += int(late) * 1e-9
-    return np.asarray(start + step * np.arange(len(channel)), dtype=np.float64)
+    parts = []
+    for moment, offset_s, count in starts or [(None, 0.0, len(channel))]:
+        if zero is not None and moment is not None and moment > UNSET:
+            late = moment.astype(np.int64) - zero.astype(np.int64)
+            offset_s += int(late) * 1e-9
+        parts.append(offset_s + step * np.arange(count if len(starts) > 1 else len(channel)))
+    return np.concatenate(parts)

@@ -1,5 +1,5 @@
 """MDF 4 files, read by code of our own: no formula, markup or attachment of a file is run."""
 
-from breakaway.measure.logs.mdf.reader import read_mdf
+from breakaway.measure.logs.mdf.reader import open_mdf
 
-__all__ = ["read_mdf"]
+__all__ = ["open_mdf"]

@@ -38,7 +38,7 @@ KINDS_OF_DATA = {
 """Type of data -> order of bytes and kind of a number, or what it is instead."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Channel:
     """Where the raw values of a channel are, and what they mean."""
 

@@ -63,10 +63,10 @@ def _of_bits(field: Records, channel: Channel, is_signed: bool) -> Raw:
     return to_the_top >> np.uint64(64 - channel.bits)
 
 
-def first_invalid(channel: Channel, data_bytes: int, records: Records) -> int | None:
-    """Return the first of the records whose sample is marked invalid."""
+def invalid(channel: Channel, data_bytes: int, records: Records) -> npt.NDArray[np.bool_] | None:
+    """Return which records have a sample that is marked invalid; None where no bit says so."""
     if not channel.flags & SOME_INVALID:
         return None
     byte, bit = divmod(channel.invalid_bit, 8)
-    marked = records[:, data_bytes + byte] & (1 << bit)
-    return int(np.argmax(marked != 0)) if marked.any() else None
+    marked: npt.NDArray[np.bool_] = (records[:, data_bytes + byte] & (1 << bit)) != 0
+    return marked
