@@ -64,9 +64,10 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
 def _build(raw: RawFile, pick: Pick, times: _Times) -> Channel:
     found = column(raw, pick.column)
     values = converted(found.values, pick.factor, pick.offset)
-    return Channel(
-        pick.channel, times.of(found, pick), values, from_name=pick.column, unit=pick.unit
-    )
+    stamps = times.of(found, pick)
+    if found.rows is not None:
+        stamps = stamps[found.rows]
+    return Channel(pick.channel, stamps, values, from_name=pick.column, unit=pick.unit)
 
 
 def converted(values: npt.NDArray[Any], factor: float, offset: float = 0.0) -> Array:
@@ -171,16 +172,35 @@ class _Times:
         name = pick.time or self.mapping.time.from_
         if name is None and found.t_s is not None:
             return found.t_s
+        if name is None and self.mapping.time.rate_hz is not None:
+            count = found.values.size if found.rows is None else int(found.rows[-1]) + 1
+            return self._counted(count)
         return self._column(place(self.raw, name) if name is not None else self._header())
 
     def _column(self, name: str) -> Array:
         if name not in self.shared:
             self.used.add(name)
             found = column(self.raw, name)
-            keys = ChannelMapping.parse({"from": name, "unit": self.mapping.time.unit})
-            unit = _unit(self.raw, name, "t_s", keys)
-            self.shared[name] = self._seconds(found.values, unit)
+            if found.rows is not None:
+                raise LogError(f"column '{brief(name)}' has blank cells; every row needs its stamp")
+            self.shared[name] = self._seconds(found.values, self._time_unit(name))
         return self.shared[name]
+
+    def _time_unit(self, name: str) -> FileUnit:
+        """Return the unit of a time column: by its rate or scale, else as of any channel."""
+        time = self.mapping.time
+        factor = 1.0 / time.rate_hz if time.rate_hz is not None else time.scale
+        if factor is not None:
+            return FileUnit("", "time", factor)
+        return _unit(self.raw, name, "t_s", ChannelMapping.parse({"from": name, "unit": time.unit}))
+
+    def _counted(self, count: int) -> Array:
+        """Return stamps at the rate of the mapping, from 0, shared by channels of one length."""
+        key = f"{count} rows"
+        if key not in self.shared:
+            period_s = 1.0 / (self.mapping.time.rate_hz or 1.0)
+            self.shared[key] = converted(np.arange(float(count)), period_s)
+        return self.shared[key]
 
     def _seconds(self, values: npt.NDArray[Any], unit: FileUnit) -> Array:
         """Convert stamps; integers that float64 would round count from the first of any column."""

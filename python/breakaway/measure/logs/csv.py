@@ -8,9 +8,9 @@ import io
 import math
 from array import array
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,7 @@ from breakaway.measure.logs.raw import (
     frozen,
     whole,
 )
+from breakaway.measure.logs.stamps import is_stamp, nanoseconds
 
 LONGEST_ROW = 4 * 2**20
 """Most characters of a row."""
@@ -54,6 +55,9 @@ BYTES_PER_CELL = 9
 
 BYTES_PER_TEXT = 100
 """A cell as a text with its place in a list."""
+
+Found = tuple[Array | str, npt.NDArray[np.intp] | None, int]
+"""Numbers of a column or why there are none, the rows that they stand in where not all do, rows."""
 
 
 @contextmanager
@@ -85,32 +89,74 @@ def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile
     with _text(path, encoding) as text:
         rows = _Rows(path, text, layout)
         header, units = _header(path, rows, layout)
-        table = _Table(path, encoding, layout, header, rows.lines_taken)
-        next(_blocks(path, rows, len(header), 1), None)  # a title in place of a header shows here
-    places = {}
-    for place, (name, unit) in enumerate(zip(_told_apart(header), units, strict=True)):
-        raw.list(name, Listed(unit, "text"))
-        places[name] = place
-
-    def read(wanted: list[str]) -> None:
-        columns = [places[name] for name in wanted]
-        budget.take("its rows", 8 * len(columns) * most_rows, 10 * len(columns) * most_rows)
-        plain = table.by_arrow(columns)
-        found: Sequence[Array | str] = plain or table.by_row(columns, budget, most_rows)
-        lengths = [len(one) for one in found if isinstance(one, np.ndarray)]
-        blank = most_rows - 1 - table.first_line - max(lengths, default=most_rows)
-        if blank > 0:
-            raw.notice("blank", "", blank, f"{counted(blank, 'blank line')} left out")
-        for name, one in zip(wanted, found, strict=True):
-            if isinstance(one, str):
-                raw.give_up(name, one)
-            else:
-                is_large = one.size > 0 and float(np.max(np.abs(one))) > EXACT
-                exact = table.integers(places[name]) if is_large else None
-                raw.channels[name] = RawChannel(frozen(one) if exact is None else exact)
-
-    raw.read = read
+        first_line = rows.lines_taken
+        # A title in place of a header shows here: the first row has more cells.
+        first = next(_blocks(path, rows, len(header), 1), [[""] * len(header)])[0]
+    table = _Table(path, encoding, layout, header, first_line)
+    reading = _Reading(raw, table, budget, most_rows)
+    named_columns = zip(_told_apart(header), units, first, strict=True)
+    for place, (name, unit, cell) in enumerate(named_columns):
+        reading.places[name] = place
+        if is_stamp(cell):
+            reading.stamped.add(name)
+        raw.list(name, Listed("s" if name in reading.stamped else unit, "text"))
+    raw.read = reading.read
     yield raw
+
+
+@dataclass
+class _Reading:
+    """Reads the columns of an open file that are wanted."""
+
+    raw: RawFile
+    table: _Table
+    budget: Budget
+    most_rows: int
+    places: dict[str, int] = field(default_factory=dict)
+    stamped: set[str] = field(default_factory=set)
+    """Columns whose first cell is a time stamp in words."""
+    zero_ns: int | None = None
+
+    def read(self, wanted: list[str]) -> None:
+        """Read stamps, then numbers."""
+        kept = len(wanted) * self.most_rows
+        self.budget.take("its rows", 8 * kept, 10 * kept)
+        self._read_stamps([name for name in wanted if name in self.stamped])
+        self._read_numbers([name for name in wanted if name not in self.stamped])
+
+    def _read_stamps(self, wanted: list[str]) -> None:
+        """Read time stamps in words; all count from the first of any."""
+        found = {name: self.table.stamps(self.places[name]) for name in wanted}
+        starts = [int(one[0]) for one in found.values() if one is not None and one.size]
+        if self.zero_ns is None and starts:
+            self.zero_ns = min(starts)
+        for name, one in found.items():
+            if one is None:
+                self.raw.give_up(name, "holds cells that are no time stamp such as the first one")
+            else:
+                self.raw.add(name, 1e-9 * (one - (self.zero_ns or 0)), None)
+
+    def _read_numbers(self, wanted: list[str]) -> None:
+        columns = [self.places[name] for name in wanted]
+        plain = self.table.by_arrow(columns) if wanted else []
+        if plain:
+            blank = self.most_rows - 1 - self.table.first_line - max(rows for *_, rows in plain)
+            if blank > 0:
+                self.raw.notice("blank", "", blank, f"{counted(blank, 'blank line')} left out")
+        else:
+            by_row = self.table.by_row(columns, self.budget, self.most_rows)
+            plain = [(one, None, 0) for one in by_row]
+        for name, (one, rows, _) in zip(wanted, plain, strict=True):
+            if isinstance(one, str):
+                self.raw.give_up(name, one)
+                continue
+            if rows is not None:
+                words = f"one cell in {rows[1] - rows[0]} holds a value: read as a slower channel"
+                self.raw.notice("slower", name, len(rows), words)
+            is_large = one.size > 0 and float(np.max(np.abs(one))) > EXACT
+            exact = self.table.integers(self.places[name]) if is_large and rows is None else None
+            values = frozen(one) if exact is None else exact
+            self.raw.channels[name] = RawChannel(values, rows=rows)
 
 
 def _told_apart(header: list[str]) -> list[str]:
@@ -140,13 +186,32 @@ class _Table:
     first_line: int
     """How many lines are above the rows."""
 
-    def by_arrow(self, columns: list[int]) -> list[Array] | None:
-        """Return the numbers of columns; None where a cell or a row is not as it must be."""
+    def by_arrow(self, columns: list[int]) -> list[Found] | None:
+        """Return the numbers of columns, in which rows they stand, and how many rows there are.
+
+        None where a cell or a row is not as it must be. Blank cells are, in a column of a slower
+        channel: one that has a value in every so many-th row.
+        """
         table = self._read(columns, pa.float64())
-        if table is None or any(column.null_count for column in table.columns):
+        if table is None:
             return None
-        found = [_numbers(column) for column in table.columns]
-        return found if all(np.isfinite(one).all() for one in found) else None
+        found: list[Found] = []
+        for column in table.columns:
+            rows = np.flatnonzero(column.is_valid().to_numpy()) if column.null_count else None
+            if rows is not None and (
+                len(rows) < 2 or np.ptp(np.diff(rows)) or rows[1] - rows[0] < 2
+            ):
+                return None
+            values = _numbers(column.drop_null() if rows is not None else column)
+            if not np.isfinite(values).all():
+                return None
+            found.append((values, rows, len(column)))
+        return found
+
+    def stamps(self, column: int) -> npt.NDArray[np.int64] | None:
+        """Return a column of time stamps in words, in ns; None where one is none."""
+        table = self._read([column], pa.string())
+        return None if table is None else nanoseconds(table.column(0))
 
     def integers(self, column: int) -> npt.NDArray[np.int64] | None:
         """Return a column of whole numbers as they are; None where it has others."""
@@ -164,7 +229,7 @@ class _Table:
             "convert_options": arrow.ConvertOptions(
                 include_columns=chosen,
                 column_types=dict.fromkeys(chosen, kind),
-                null_values=[],
+                null_values=[""],
                 decimal_point=self.layout.decimal,
             ),
         }
@@ -190,6 +255,12 @@ class _Table:
                 for column, place in zip(found, columns, strict=True):
                     column.extend(by_column[place], plain)
         return [column.reason or column.give() for column in found]
+
+
+def _is_slower(rows: npt.NDArray[np.intp]) -> bool:
+    """Whether values stand in every so many-th row."""
+    steps = np.diff(rows)
+    return steps.size > 0 and bool(np.all(steps == steps[0]) and steps[0] > 1)
 
 
 def _numbers(column: Any) -> Array:  # noqa: ANN401 - pyarrow has no types

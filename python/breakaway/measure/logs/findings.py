@@ -15,6 +15,7 @@ unit               the mapping's unit is not the one that the file states
 cut_off            the recording ends within a piece that was not finished
 invalid            samples that the file marks as invalid are left out
 blank              blank lines are left out
+slower             a column has a value in every so many-th row only
 saturation         at least 5 samples in a row equal the largest or smallest value, and steps of
                    more than 2 quanta lead there and away
 =================  ===============================================================================
@@ -49,6 +50,7 @@ Kind = Literal[
     "cut_off",
     "invalid",
     "blank",
+    "slower",
 ]
 
 GAP = 2.5

@@ -44,6 +44,12 @@ class TimeMapping(Model):
     unit: Name | None = None
     """Unit of the time channels in the file."""
 
+    rate_hz: Annotated[float | None, Field(gt=0.0)] = None
+    """Rate of a file without stamps; with `from_`, of the numbers of samples in that channel."""
+
+    scale: Annotated[float | None, Field(gt=0.0)] = None
+    """Seconds in 1 of the time channels, where they are in a unit of their own."""
+
 
 class CsvMapping(Model):
     """How a CSV file is laid out."""
@@ -87,7 +93,7 @@ def load_mapping(given: str | Path | Keys[str, Any] | None, log: Path) -> tuple[
     """Return the mapping of a log, and where it came from (nothing where there is none).
 
     Without a given one, the TOML file of the log's name beside it counts if it has a table
-    ``channels`` or ``csv``.
+    ``channels``, ``csv`` or ``time``.
 
     Raises
     ------
@@ -103,7 +109,7 @@ def load_mapping(given: str | Path | Keys[str, Any] | None, log: Path) -> tuple[
     beside = log.with_suffix(".toml")
     if beside != log and is_file(beside):
         values = _toml(beside)
-        if any(isinstance(values.get(key), dict) for key in ("channels", "csv")):
+        if any(isinstance(values.get(key), dict) for key in ("channels", "csv", "time")):
             return parse_mapping(values, beside.name), beside.name
     return Mapping(), ""
 
@@ -121,7 +127,14 @@ def parse_mapping(values: Keys[str, Any], source: str) -> Mapping:
         channels[name] = _parse(ChannelMapping, keys, where)
         _check_unit(name, channels[name], where)
     rest = {key: value for key, value in values.items() if key != "channels"}
-    return _parse(Mapping, rest | {"channels": channels}, source)
+    mapping = _parse(Mapping, rest | {"channels": channels}, source)
+    time = mapping.time
+    if sum(one is not None for one in (time.unit, time.rate_hz, time.scale)) > 1:
+        raise LogError(
+            f"{source}: time: has several of unit, rate_hz and scale; one alone says what 1 of its "
+            "numbers is: delete the others"
+        )
+    return mapping
 
 
 def _check_unit(name: str, channel: ChannelMapping, where: str) -> None:

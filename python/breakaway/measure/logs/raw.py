@@ -46,6 +46,8 @@ class RawChannel:
 
     values: npt.NDArray[Any]
     t_s: Array | None = None
+    rows: npt.NDArray[np.intp] | None = None
+    """The rows that the values stand in, where the channel is slower than its table."""
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,8 @@ def read_log(
         unit = "ms"
 
     and optionally ``format = "tdms"``, ``time = "..."`` in a channel with a time column of its
-    own, and a table ``[csv]`` with ``delimiter``, ``decimal``, ``skip_rows``, ``units_row``.
+    own, ``rate_hz`` or ``scale`` in ``[time]`` in place of a unit, and a table ``[csv]`` with
+    ``delimiter``, ``decimal``, ``skip_rows``, ``header``, ``units_row``, ``encoding``.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ def read_log(
     mapping : str, Path or mapping, optional
         A TOML file, or its content as nested dictionaries; an empty one stands for none. By
         default the file of the same name with the suffix ``.toml``, if it has a table
-        ``channels`` or ``csv``.
+        ``channels``, ``csv`` or ``time``.
     format : str, optional
         One of `FORMATS`; by default as the file's first bytes, else its suffix, say.
     memory_bytes : float, optional
