@@ -342,6 +342,7 @@ def calls(w):
         "open_tuning": (bk.open_tuning, {"folder": w.folder / "tuning"}),
         "pole_placement": (bk.design.pole_placement, {"joint": joint, "mass_kg": 1.0, **poles}),
         "preset_names": (bk.preset_names, {}),
+        "list_channels": (bk.list_channels, {"path": w.folder / "log.csv"}),
         "read_log": (bk.read_log, {"path": w.folder / "log.csv"}),
         "resolve": (bk.resolve, {"scenario": w.scenario}),
         "rig_from_blank": (
@@ -510,6 +511,7 @@ ACCEPTED = {
     "history": ([], {}),
     "noticed": ([], {}),
     "ignored_columns": ([], {}),
+    "list_channels.memory_bytes": (5,),
     "impose_motion.velocity_m_per_s": ([],),
     "measured_cycles.velocity_m_per_s": (),
     "compare_limit_cycle.velocity_m_per_s": (),

@@ -62,8 +62,11 @@ from breakaway.measure.identification import identify_inertia_friction as identi
 from breakaway.measure.identification import rig_from_blank as rig_from_blank
 from breakaway.measure.logs import Channel as Channel
 from breakaway.measure.logs import Finding as Finding
+from breakaway.measure.logs import ListedChannel as ListedChannel
+from breakaway.measure.logs import Listing as Listing
 from breakaway.measure.logs import Log as Log
 from breakaway.measure.logs import derive_motion as derive_motion
+from breakaway.measure.logs import list_channels as list_channels
 from breakaway.measure.logs import noise_floor as noise_floor
 from breakaway.measure.logs import read_log as read_log
 from breakaway.model.friction.imposed import ImposedMotion as ImposedMotion

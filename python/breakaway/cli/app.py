@@ -15,6 +15,7 @@ from breakaway.cli.events import events
 from breakaway.cli.export import EXPORT, export
 from breakaway.cli.help import add_command, unwrapped
 from breakaway.cli.identify import identify
+from breakaway.cli.logs import logs
 from breakaway.cli.presets import presets
 from breakaway.cli.reproduce import reproduce
 from breakaway.cli.rig_from_blank import rig_from_blank
@@ -152,6 +153,13 @@ add_command(
     design,
     "breakaway design paper_as_computed",
     "breakaway design my_joint.toml --require-stable && echo stable",
+)
+add_command(
+    app,
+    logs,
+    "breakaway logs motor.tdms",
+    "breakaway logs motor.csv --write-mapping motor.toml",
+    "breakaway logs motor.mf4 --json | jq .channels",
 )
 add_command(
     app,

@@ -26,10 +26,10 @@ from breakaway.base.text import brief
 from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
+from breakaway.measure.logs.listed import ListedChannel
 from breakaway.measure.logs.mapping import CsvMapping
 from breakaway.measure.logs.raw import (
     EXACT,
-    Listed,
     RawChannel,
     RawFile,
     check_names,
@@ -99,7 +99,8 @@ def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile
         reading.places[name] = place
         if is_stamp(cell):
             reading.stamped.add(name)
-        raw.list(name, Listed("s" if name in reading.stamped else unit, "text"))
+        unit_there = "s" if name in reading.stamped else unit
+        raw.list(ListedChannel(name, unit_there, "text"))
     raw.read = reading.read
     yield raw
 

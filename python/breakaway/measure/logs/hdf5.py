@@ -15,9 +15,9 @@ from breakaway.base.reading import open_regular
 from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.hdf5_types import is_opaque
+from breakaway.measure.logs.listed import ListedChannel
 from breakaway.measure.logs.raw import (
     DEFLATE_RATIO,
-    Listed,
     RawFile,
     check_claim,
     guarded,
@@ -126,7 +126,7 @@ def _list(
     fields = dataset.dtype.fields
     if fields is None:
         unit = _attribute(h5py, dataset, "unit") or _attribute(h5py, dataset, "units")
-        raw.list(name, Listed(unit, str(dataset.dtype), dataset.size))
+        raw.list(ListedChannel(name, unit, str(dataset.dtype), dataset.size))
         arrays[name] = _packed(h5py, dataset)
         return
     for member, (kind, *_) in fields.items():
@@ -134,7 +134,7 @@ def _list(
         if reason := no_vector(kind, (1,)):
             raw.refuse(full, reason)
         else:
-            raw.list(full, Listed("", str(kind), dataset.size))
+            raw.list(ListedChannel(full, "", str(kind), dataset.size))
             arrays[full] = _Array(dataset, member)
 
 

@@ -101,7 +101,7 @@ def read_header(name: str, unit: str = "") -> Stated | None:
 
 def _splits(name: str) -> list[tuple[str, str]]:
     """Return the ways to split a name into what it is and its unit, the longest unit first."""
-    text, symbol = _bracketed(re.sub(r"#\d+$", "", name))
+    text, symbol = bracketed(re.sub(r"#\d+$", "", name))
     cased = re.split(r"[\s_.\-]+", re.split(r"[/.\\]", text.strip())[-1])
     parts = [part.lower() for part in cased]
     if symbol is not None:
@@ -112,7 +112,7 @@ def _splits(name: str) -> list[tuple[str, str]]:
     return [(what, unit) for what, unit in ways if unit.lower() != "in"]
 
 
-def _bracketed(name: str) -> tuple[str, str | None]:
+def bracketed(name: str) -> tuple[str, str | None]:
     """Split off a unit in brackets at the end; None where there is none."""
     text = name.rstrip()
     start = max(text.rfind("["), text.rfind("("))

@@ -13,7 +13,8 @@ import pyarrow.parquet as pq
 
 from breakaway.base.reading import open_regular
 from breakaway.measure.logs.budget import Budget
-from breakaway.measure.logs.raw import Listed, RawFile, check_names, guarded
+from breakaway.measure.logs.listed import ListedChannel
+from breakaway.measure.logs.raw import RawFile, check_names, guarded
 
 NS_PER_STAMP = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
@@ -65,7 +66,8 @@ def _list(raw: RawFile, file: Any) -> dict[str, Any]:  # noqa: ANN401 - pyarrow 
         if count[field.name] > 1 or not (_is_number(field.type) or _is_stamp(field.type)):
             raw.refuse(field.name, f"is of type {field.type}; it must be real numbers")
         else:
-            raw.list(field.name, Listed(unit, str(field.type), file.metadata.num_rows))
+            rows = file.metadata.num_rows
+            raw.list(ListedChannel(field.name, unit, str(field.type), rows))
     return {field.name: field for field in fields if field.name not in raw.unreadable}
 
 

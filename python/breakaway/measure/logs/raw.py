@@ -23,6 +23,7 @@ from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
 from breakaway.measure.logs.findings import Finding, Kind
+from breakaway.measure.logs.listed import ListedChannel
 
 DEFLATE_RATIO = 1032
 """The most that zlib compresses; a file that claims more numbers than this allows is damaged."""
@@ -50,30 +51,6 @@ class RawChannel:
     """The rows that the values stand in, where the channel is slower than its table."""
 
 
-@dataclass(frozen=True)
-class Listed:
-    """What a file says of a channel before its values are read.
-
-    Parameters
-    ----------
-    unit : str
-        The unit that the file states, empty for none.
-    kind : str
-        The type of its numbers there.
-    count : int, optional
-        How many, where that is known without reading them.
-    rate_hz, start_s : float, optional
-        Rate and first stamp of stamps of its own, where the file states them.
-
-    """
-
-    unit: str = ""
-    kind: str = ""
-    count: int | None = None
-    rate_hz: float | None = None
-    start_s: float | None = None
-
-
 @dataclass(eq=False)
 class RawFile:
     """The channels of an open file by their names there, and the values of those that were loaded.
@@ -83,7 +60,7 @@ class RawFile:
     """
 
     path: Path
-    listed: dict[str, Listed] = field(default_factory=dict)
+    listed: dict[str, ListedChannel] = field(default_factory=dict)
     channels: dict[str, RawChannel] = field(default_factory=dict)
     unreadable: dict[str, str] = field(default_factory=dict)
     history: tuple[str, ...] = ()
@@ -99,13 +76,13 @@ class RawFile:
     def __contains__(self, name: str) -> bool:
         return name in self.listed or name in self.unreadable
 
-    def list(self, name: str, listed: Listed) -> None:
+    def list(self, channel: ListedChannel) -> None:
         """Note a channel that can be loaded; of several of one name none can."""
-        if name in self:
-            self.refuse(name, "")
+        if channel.name in self:
+            self.refuse(channel.name, "")
             return
-        self._check_name(name)
-        self.listed[name] = listed
+        self._check_name(channel.name)
+        self.listed[channel.name] = channel
 
     def load(self, wanted: Iterable[str]) -> None:
         """Read channels that are listed and not read yet."""
@@ -122,7 +99,9 @@ class RawFile:
         elif reason := no_vector(array.dtype, array.shape):
             self.refuse(name, reason)
             return
-        self.list(name, Listed(unit, str(array.dtype), array.size))
+        self.list(
+            ListedChannel(name, unit, str(array.dtype), array.size, has_stamps=t_s is not None)
+        )
         if name in self.listed:
             self.add(name, array, t_s)
 
@@ -153,7 +132,7 @@ class RawFile:
         self._check_name(name)
         self.unreadable[name] = reason
         if unit:
-            self.listed[name] = Listed(unit)
+            self.listed[name] = ListedChannel(name, unit)
 
     def _check_name(self, name: str) -> None:
         """Refuse a file with a name too long, or with too many.

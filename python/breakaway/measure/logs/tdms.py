@@ -12,7 +12,8 @@ import numpy as np
 from breakaway.base.reading import open_regular
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
-from breakaway.measure.logs.raw import Listed, RawFile, check_claim, check_names, guarded, need
+from breakaway.measure.logs.listed import ListedChannel
+from breakaway.measure.logs.raw import RawFile, check_claim, check_names, guarded, need
 from breakaway.measure.logs.tdms_segments import Segments, read_segments
 
 MOST_SCALES = 8
@@ -101,7 +102,8 @@ def _list(
         return
     step = float(channel.properties.get("wf_increment", 0.0))
     rate_hz = 1.0 / step if step else None
-    raw.list(name, Listed(unit, str(channel.dtype), len(channel), rate_hz))
+    kind, count = str(channel.dtype), len(channel)
+    raw.list(ListedChannel(name, unit, kind, count, rate_hz, has_stamps=bool(step)))
 
 
 def _read(

@@ -28,6 +28,7 @@ _FACTORS = {
     "force": {
         "N": 1.0,
         "mN": 1e-3,
+        "daN": 10.0,
         "uN": 1e-6,
         "kN": 1e3,
         "MN": 1e6,
@@ -46,6 +47,8 @@ _FACTORS = {
     },
     "voltage": {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "kV": 1e3},
     "current": {"A": 1.0, "mA": 1e-3, "uA": 1e-6},
+    "torque": {"N m": 1.0, "mN m": 1e-3, "kN m": 1e3, "lbf in": 0.1129848290276167},
+    "angle": {"rad": 1.0, "mrad": 1e-3, "deg": 0.017453292519943295, "rev": 6.283185307179586},
     "ratio": {"1": 1.0, "%": 1e-2},
 }
 
@@ -58,6 +61,29 @@ _UNITS = [
     FileUnit("degC", "temperature", 1.0),
     FileUnit("K", "temperature", 1.0, -273.15),
 ]
+
+_SPELLINGS = {
+    "s": ("sec", "second", "seconds", "sekunde", "sekunden"),
+    "ms": ("msec", "millisecond", "milliseconds", "millisekunden"),
+    "us": ("usec", "microsecond", "microseconds", "mikrosekunden"),
+    "min": ("minute", "minutes", "minuten"),
+    "h": ("hr", "hour", "hours", "stunden"),
+    "m": ("meter", "meters", "metre", "metres"),
+    "mm": ("millimeter", "millimeters", "millimetre", "millimetres"),
+    "um": ("micron", "microns", "micrometer", "micrometers", "mikrometer"),
+    "in": ("inch", "inches"),
+    "mm/s": ("mm/sec",),
+    "N": ("newton", "newtons"),
+    "kN": ("kilonewton", "kilonewtons"),
+    "lbf": ("lb", "lbs", "pound", "pounds"),
+    "deg": ("degree", "degrees", "grad"),
+    "degC": ("celsius",),
+    "V": ("volt", "volts"),
+    "A": ("ampere", "amperes", "amps"),
+}
+"""Symbol -> other words for it in headers, in lower case."""
+
+_WORDS = {word: symbol for symbol, words in _SPELLINGS.items() for word in words}
 
 _DIMENSIONS = {
     unit.symbol: unit.dimension for unit in _UNITS if unit.factor == 1.0 and not unit.offset
@@ -112,12 +138,13 @@ def unit_named(symbol: str, channel: str) -> FileUnit:
     Traceback (most recent call last):
         ...
     breakaway.errors.LogError: channel 'force_n': the unit 'mm' measures length, not force; it \
-must be one of N, mN, uN, kN, MN, lbf, kgf
+must be one of N, mN, daN, uN, kN, MN, lbf, kgf
 
     """
     dimension = dimension_of(channel)
     known = ", ".join(u.symbol for u in _UNITS if u.dimension == dimension)
-    found = next((u for u in _UNITS if plain(u.symbol) == plain(symbol)), None)
+    text = plain(_WORDS.get(symbol.lower(), symbol))
+    found = next((u for u in _UNITS if plain(u.symbol) == text), None)
     if found is None:
         raise LogError(
             f"channel '{channel}': the unit '{brief(symbol)}' is unknown; it must be one of "
@@ -144,6 +171,7 @@ def stated(symbol: str, channel: str) -> FileUnit | None:
 
     """
     text = plain(symbol.replace("_per_", "/").replace("_", "/"))
+    text = plain(_WORDS.get(text.lower(), text))
     units = [u for u in _UNITS if u.dimension == dimension_of(channel)]
     exact = [u for u in units if plain(u.symbol) == text]
     found = exact or [u for u in units if plain(u.symbol).lower() == text.lower()]

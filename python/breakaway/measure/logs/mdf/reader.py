@@ -13,13 +13,14 @@ import numpy.typing as npt
 from breakaway.base.reading import open_regular
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
+from breakaway.measure.logs.listed import ListedChannel
 from breakaway.measure.logs.mdf.blocks import Blocks, open_blocks
 from breakaway.measure.logs.mdf.conversion import Conversion, ConversionError, NoNumber, identity
 from breakaway.measure.logs.mdf.conversion_blocks import Conversions
 from breakaway.measure.logs.mdf.records import Records, slices
 from breakaway.measure.logs.mdf.structure import MASTERS, Channel, DataGroup, Group, data_groups
 from breakaway.measure.logs.mdf.values import invalid, raw_values, why_not_numbers
-from breakaway.measure.logs.raw import Listed, RawFile, guarded
+from breakaway.measure.logs.raw import RawFile, guarded
 from breakaway.measure.logs.units import stated
 
 NO_ROWS: Array = np.zeros(0)
@@ -134,7 +135,9 @@ def _list(
         if why_not:
             raw.refuse(names[channel], why_not)
         else:
-            raw.list(names[channel], Listed(series.unit, channel.data, group.records))
+            has_stamps = clock is not None
+            listed = (names[channel], series.unit, channel.data, group.records)
+            raw.list(ListedChannel(*listed, has_stamps=has_stamps))
 
 
 def _clock(group: Group) -> Channel | None:
