@@ -8,9 +8,8 @@ use breakaway_core::control::{AntiWindup, Cascade, DerivativeOf, Gains, Pid, Vel
 use breakaway_core::rig::{Drive, LimitedPid, RIG_NUMBERS, Rig, Row};
 
 /// All numbers of a rig but the offset.
-const SHARED: [f64; 15] = [
-    5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6, 2.0, -0.2, 3e-5,
-];
+const SHARED: [f64; 15] =
+    [5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6, 2.0, -0.2, 3e-5];
 
 const DRIVES: [Drive<f64>; 4] = [
     Drive::Imposed,

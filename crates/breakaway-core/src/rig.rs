@@ -215,7 +215,8 @@ impl<R: Real> Rig<R> {
         };
         let previous_position_m = x - v * row.period_s;
         let pid = PidState { previous_position_m, ..PidState::at_rest() };
-        let mut state = RigState { plant, free_m, cascade: CascadeState::moving(x, v, row.period_s), pid };
+        let mut state =
+            RigState { plant, free_m, cascade: CascadeState::moving(x, v, row.period_s), pid };
         if let Drive::Pid(limited) = drive {
             self.start_pid(limited, &mut state, row);
         }

@@ -10,9 +10,8 @@ use breakaway_core::{Dual, Maybe, Real};
 use complex_step::Complex;
 
 /// In the order of [`RIG_NUMBERS`].
-const NUMBERS: [f64; 16] = [
-    5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6, 0.0, 0.0, 0.0, 4.0,
-];
+const NUMBERS: [f64; 16] =
+    [5.0, 50.0, 20.0, 30.0, 40.0, 60.0, 1.3, 0.01, 1e6, 300.0, 100.0, 0.6, 0.0, 0.0, 0.0, 4.0];
 
 /// A rig with some of its numbers changed; LuGre.
 fn rig(changes: &[(&str, f64)]) -> Rig<f64> {
