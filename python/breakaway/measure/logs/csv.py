@@ -138,8 +138,10 @@ class _Reading:
                 self.raw.add(name, 1e-9 * (one - (self.zero_ns or 0)), None)
 
     def _read_numbers(self, wanted: list[str]) -> None:
+        if not wanted:
+            return
         columns = [self.places[name] for name in wanted]
-        plain = self.table.by_arrow(columns) if wanted else []
+        plain = self.table.by_arrow(columns)
         if plain:
             blank = self.most_rows - 1 - self.table.first_line - max(rows for *_, rows in plain)
             if blank > 0:
@@ -199,9 +201,7 @@ class _Table:
         found: list[Found] = []
         for column in table.columns:
             rows = np.flatnonzero(column.is_valid().to_numpy()) if column.null_count else None
-            if rows is not None and (
-                len(rows) < 2 or np.ptp(np.diff(rows)) or rows[1] - rows[0] < 2
-            ):
+            if rows is not None and not _is_slower(rows):
                 return None
             values = _numbers(column.drop_null() if rows is not None else column)
             if not np.isfinite(values).all():
