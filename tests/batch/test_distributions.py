@@ -1,5 +1,8 @@
 """Distributions are what they say: against scipy, and whatever their numbers."""
 
+import math
+import sys
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -157,11 +160,31 @@ def fills_its_range(distribution):
     return isinstance(distribution, bk.Uniform | bk.LogUniform)
 
 
+def leaves_the_numbers(distribution, factor):
+    """Whether samples above 0 move below the least number or beyond the largest."""
+    if not isinstance(distribution, bk.Samples) or min(distribution.values) <= 0.0:
+        return False
+    logs = [math.log(value) for value in distribution.values]
+    center = math.fsum(logs) / len(logs)
+    moved = [center + factor * (one - center) for one in logs]
+    least, largest = math.log(5e-324), math.log(sys.float_info.max)
+    assume(all(abs(one - end) > 1.0 for one in moved for end in (least, largest)))
+    return min(moved) < least or max(moved) > largest
+
+
 @given(distribution=distributions(), factor=st.floats(0.01, 1000.0), share=SHARE)
 def test_scaling_stays_within_the_range(distribution, factor, share):
     """No bound moves, whatever the factor; and what is above 0 stays above 0."""
     if fills_its_range(distribution) and factor > 1.0:
         with pytest.raises(bk.ScenarioError, match=r"^factor: .* is not <= 1, because the dist"):
+            distribution.scaled(factor)
+        return
+    if isinstance(distribution, bk.LogNormal) and factor * distribution.sigma > 50.0:
+        with pytest.raises(bk.ScenarioError, match=r"^sigma: .* is not <= 50"):
+            distribution.scaled(factor)
+        return
+    if leaves_the_numbers(distribution, factor):
+        with pytest.raises(bk.ScenarioError, match=r"^factor: .* beyond what a number can hold"):
             distribution.scaled(factor)
         return
     value = float(distribution.scaled(factor).quantile(np.array([share]))[0])

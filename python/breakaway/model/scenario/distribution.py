@@ -190,6 +190,10 @@ class Normal(Model):
         return Normal(mean=self.mean, std=factor * self.std, low=self.low, high=self.high)
 
 
+SIGMA_MAX = 50.0
+"""Largest standard deviation of a logarithm: draws of a wider law would leave the numbers."""
+
+
 class LogNormal(Model):
     """The logarithm is normal; truncated where ``low`` or ``high`` is given.
 
@@ -205,7 +209,7 @@ class LogNormal(Model):
     """The kind of distribution."""
     median: Positive
     """Median of the distribution before it is truncated."""
-    sigma: NotNegative
+    sigma: Annotated[float, Field(ge=0.0, le=SIGMA_MAX)]
     """Standard deviation of the natural logarithm."""
     low: Positive | None = None
     """Smallest value. Left out: 0."""
@@ -292,15 +296,26 @@ class Samples(Model):
         factor : float
             1 for no change, 0 for no spread.
 
+        Raises
+        ------
+        ScenarioError
+            A value is moved beyond the largest number, or one above 0 to 0.
+
         """
         check_arguments(Samples.scaled, locals(), ScenarioError)
         values = np.asarray(self.values)
-        if (values > 0.0).all():
-            center = np.exp(np.log(values).mean())
-            moved = center * (values / center) ** factor
-        else:
-            center = values.mean()
-            moved = center + factor * (values - center)
+        is_positive = bool((values > 0.0).all())
+        with np.errstate(over="ignore", under="ignore"):
+            if is_positive:
+                logs = np.log(values)
+                moved = np.exp(logs.mean() + factor * (logs - logs.mean()))
+            else:
+                moved = values.mean() + factor * (values - values.mean())
+        if not np.isfinite(moved).all() or (is_positive and not moved.all()):
+            raise ScenarioError(
+                f"factor: {factor!r} moves samples beyond what a number can hold; give a smaller "
+                "one, or samples that are nearer to each other"
+            )
         return Samples(values=tuple(moved.tolist()), rows=self.rows)
 
 
