@@ -154,6 +154,7 @@ def world(tmp_path_factory):
     joint.save(folder / "joint.toml")
     rig = bk.RigFile(stiffness_n_per_m=1e6)
     rig.save(folder / "rig.toml")
+    (folder / "limits.toml").write_text("jump_max_m = 1e-4\n")
     rows = "".join(f"{k / 100},{k / 1000},2.5\n" for k in range(20))
     (folder / "log.csv").write_text("t_s,position_m,force_n\n" + rows)
     comparison = bk.compare_methods(population, [method], laws="lugre", runs=2, baselines=[])
@@ -177,6 +178,7 @@ def world(tmp_path_factory):
         studied=bk.run_study(study, out=folder / "study"),
         tuned=bk.tune(tuning, out=folder / "tuning"),
         comparison=comparison,
+        advised=bk.advise(population, parts_max=16, budget_s=1e6),
         pid=bk.design.SampledPid(bk.design.PidGains(kp=3.1e6, ki=1.3e9, kd=724.0), period_s=1e-5),
     )
 
@@ -292,6 +294,7 @@ def calls(w):
         "export_c": (bk.export_c, {"scenario": w.scenario, "out": w.folder / "c"}),
         "export_fmu": (bk.export_fmu, {"scenario": w.scenario, "out": w.folder / "rig.fmu"}),
         "find_breakaway_events": (bk.find_breakaway_events, {"log": w.starts[0]}),
+        "advise": (bk.advise, {"parts": w.population, "parts_max": 16, "budget_s": 1e-3}),
         "check_accuracy": (
             bk.check_accuracy,
             {"scenario": w.scenario, "run_index": 0, "progress": None},
@@ -322,8 +325,10 @@ def calls(w):
             bk.design.limit_cycles,
             {"pid": w.pid, "joint": joint, "mass_kg": 1.0, "speed_m_per_s": 0.06},
         ),
+        "load_limits": (bk.load_limits, {"path": w.folder / "limits.toml"}),
         "load_method": (bk.load_method, {"source": "steady_feed"}),
         "load_population": (bk.load_population, {"source": "seized_parts"}),
+        "load_rig": (bk.load_rig, {"source": "screw_jack"}),
         "load_scenario": (bk.load_scenario, {"source": "paper_as_computed"}),
         "load_stack": (bk.load_stack, {"source": "pi_p888_91_pd200"}),
         "load_study": (bk.load_study, {"path": "no.toml"}),
@@ -384,6 +389,7 @@ def calls(w):
         ),
         "stuck_plant": (bk.design.stuck_plant, {"joint": joint, "mass_kg": 1.0}),
         "tune": (bk.tune, {"tuning": w.tuning, "out": w.folder / "tuned"}),
+        "write_advice": (bk.write_advice, {"advice": w.advised, "folder": w.folder / "advice"}),
     }
 
 
@@ -407,7 +413,7 @@ def test_every_function_has_a_valid_call(world):
 def test_everything_is_shown_in_a_line(world):
     results = (
         *("log", "found", "parts", "run", "batch", "trial", "studied", "tuned", "comparison"),
-        *("prediction", "report", "law", "posterior"),
+        *("prediction", "report", "law", "posterior", "advised"),
     )
     found = world.found
     shown = vars(world) | {
@@ -474,7 +480,7 @@ def fits(name, parameter, value):
 
 
 NUMBERS = (
-    *("amplitude", "bias", "count", "damping_ratio", "decimation", "delay_samples"),
+    *("amplitude", "bias", "budget_s", "count", "damping_ratio", "decimation", "delay_samples"),
     *("derivative_filter_s", "end_s", "factor", "force_limit_n", "gap_s", "harmonics", "kd", "ki"),
     *("kp", "lowpass_hz", "mass_kg", "min_rest_s", "min_slip_m", "offset_n", "origin_m"),
     *("period_s", "pole_per_s", "rest_speed_m_per_s", "rows", "run_index", "runs", "samples"),
@@ -491,6 +497,7 @@ NUMBERS = (
     ),
 )
 TEXTS = (
+    "command",
     "folder",
     "note",
     "out",
@@ -500,7 +507,7 @@ TEXTS = (
     "Channel.from_name",
     "Channel.unit",
 )
-LISTS = ("baselines", "columns", "free", "repeats", "spans")
+LISTS = ("baselines", "columns", "made_of", "free", "repeats", "spans")
 MAPPINGS = ("changes", "channels", "fixed", "guesses", "levels", "mapping", "numbers", "vary")
 
 ACCEPTED = {

@@ -2,6 +2,9 @@
 
 from breakaway import design as design
 from breakaway._core import __version__ as __version__
+from breakaway.ask.advice import Advice as Advice
+from breakaway.ask.advice import advise as advise
+from breakaway.ask.advice import write_advice as write_advice
 from breakaway.ask.comparison import Comparison as Comparison
 from breakaway.ask.comparison import compare_methods as compare_methods
 from breakaway.ask.durable.progress import Progress as Progress
@@ -78,6 +81,7 @@ from breakaway.model.scenario import CoulombStiction as CoulombStiction
 from breakaway.model.scenario import DriftOverTime as DriftOverTime
 from breakaway.model.scenario import DriftOverTravel as DriftOverTravel
 from breakaway.model.scenario import ElastoPlastic as ElastoPlastic
+from breakaway.model.scenario import ExtractionRig as ExtractionRig
 from breakaway.model.scenario import FeedAxis as FeedAxis
 from breakaway.model.scenario import FeedSettings as FeedSettings
 from breakaway.model.scenario import FieldDisturbance as FieldDisturbance
@@ -90,6 +94,7 @@ from breakaway.model.scenario import Gains as Gains
 from breakaway.model.scenario import GaussianDisturbance as GaussianDisturbance
 from breakaway.model.scenario import Gentleness as Gentleness
 from breakaway.model.scenario import Gms as Gms
+from breakaway.model.scenario import HarmLimits as HarmLimits
 from breakaway.model.scenario import IdealActuator as IdealActuator
 from breakaway.model.scenario import InterferenceNormalForce as InterferenceNormalForce
 from breakaway.model.scenario import LawNumbers as LawNumbers
@@ -121,6 +126,7 @@ from breakaway.model.scenario import SpringNormalForce as SpringNormalForce
 from breakaway.model.scenario import StackPulses as StackPulses
 from breakaway.model.scenario import SteadyFeed as SteadyFeed
 from breakaway.model.scenario import StepReference as StepReference
+from breakaway.model.scenario import StressLimit as StressLimit
 from breakaway.model.scenario import TemperatureNormalForce as TemperatureNormalForce
 from breakaway.model.scenario import TimedImpacts as TimedImpacts
 from breakaway.model.scenario import Timing as Timing
@@ -133,8 +139,10 @@ from breakaway.model.scenario import Uniform as Uniform
 from breakaway.model.scenario import UniformDisturbance as UniformDisturbance
 from breakaway.model.scenario import VibratedFeed as VibratedFeed
 from breakaway.model.scenario import Watch as Watch
+from breakaway.model.scenario import load_limits as load_limits
 from breakaway.model.scenario import load_method as load_method
 from breakaway.model.scenario import load_population as load_population
+from breakaway.model.scenario import load_rig as load_rig
 from breakaway.model.scenario import load_scenario as load_scenario
 from breakaway.model.scenario import load_stack as load_stack
 from breakaway.model.scenario import preset_names as preset_names

@@ -21,7 +21,13 @@ COMMANDS = ("run", "design", "identify", "presets", "init", "schema", "reproduce
 
 def test_presets_are_listed(call: Call) -> None:
     found = json.loads(call("presets", "--json").stdout)
-    folders = {"scenario": "", "method": "methods", "population": "populations", "stack": "stacks"}
+    folders = {
+        "scenario": "",
+        "method": "methods",
+        "population": "populations",
+        "rig": "rigs",
+        "stack": "stacks",
+    }
     listed = [(preset["kind"], preset["name"]) for preset in found]
     assert listed == [(kind, name) for kind in folders for name in bk.preset_names(folders[kind])]
     shown = call("presets").stdout

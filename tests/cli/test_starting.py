@@ -29,6 +29,8 @@ LOAD: dict[str, Callable[[Path], Any]] = {
     "scenario": bk.load_scenario,
     "population": bk.load_population,
     "method": bk.load_method,
+    "rig": bk.load_rig,
+    "limits": bk.load_limits,
     "tuning": load_tuning,
     **dict.fromkeys(KINDS, load_study),
 }
@@ -72,11 +74,13 @@ def test_what_init_writes_runs_at_once(
     path.write_text(text)
     monkeypatch.chdir(tmp_path)
     command = command.replace("--runs 100", "--runs 2 --laws lugre")
+    command = command.replace("--budget-s 30", "--budget-s 1 --parts-max 16")
     if kind is StartKind.POPULATION:
         command += " --method force_ramp"
     done = call(*shlex.split(command))
     assert done.exit_code == 0, done.stderr
-    ended = kind is StartKind.SCENARIO or (tmp_path / "result" / "summary.json").exists()
+    ends = ("summary.json", "advice.json")
+    ended = kind is StartKind.SCENARIO or any((tmp_path / "result" / one).exists() for one in ends)
     assert ended, done.stdout
 
 
@@ -95,9 +99,10 @@ def test_what_init_writes_loads_and_fits_its_schema(
     assert max(len(line) for line in path.read_text().splitlines() if line[:1] == "#") <= 96
 
 
-@pytest.mark.parametrize("kind", ["scenario", "method", "population", "tuning"])
+@pytest.mark.parametrize("kind", ["scenario", "method", "population", "rig", "tuning"])
 def test_init_starts_from_every_preset(call: Call, tmp_path: Path, kind: str) -> None:
-    folder = {"scenario": "", "method": "methods", "tuning": "methods"}.get(kind, "populations")
+    folders = {"scenario": "", "method": "methods", "tuning": "methods", "rig": "rigs"}
+    folder = folders.get(kind, "populations")
     for preset in bk.preset_names(folder):
         path = tmp_path / f"{preset}.toml"
         written(call, path, "--kind", kind, "--preset", preset)

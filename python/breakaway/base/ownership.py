@@ -48,7 +48,8 @@ C_SOURCES = Kind("exported C", "interface.json", frozenset({"breakaway_version",
 REPRODUCTION = Kind(
     "a reproduction of the paper", "reproduction.json", frozenset({"findings", "figures"})
 )
-KINDS = (RUN, STUDY, DESIGN, C_SOURCES, REPRODUCTION)
+ADVICE = Kind("an advice", "advice.json", frozenset({"ranking", "sentences", "rests_on"}))
+KINDS = (RUN, STUDY, DESIGN, C_SOURCES, REPRODUCTION, ADVICE)
 
 
 def refuse_other_kinds(folder: Path, kind: Kind) -> None:

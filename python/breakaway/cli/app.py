@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from breakaway.cli.advise import advise
 from breakaway.cli.compare import compare
 from breakaway.cli.design import design
 from breakaway.cli.events import events
@@ -147,6 +148,13 @@ add_command(
     "breakaway compare my_parts.toml --method mine.toml",
     "breakaway compare --laws lugre,coulomb_stiction --out laws",
     "breakaway compare gallery/comparison.toml --out again",
+)
+add_command(
+    app,
+    advise,
+    "breakaway advise joint.toml --rig screw_jack --out advice",
+    "breakaway advise parts.toml --rig my_rig.toml --limits limits.toml",
+    "breakaway advise seized_parts --budget-s 20 --json | jq .sentences",
 )
 add_command(
     app,

@@ -20,6 +20,7 @@ def _presets(*folders: str) -> Completion:
 scenario_preset = _presets("")
 population_preset = _presets("populations")
 method_preset = _presets("methods")
+rig_preset = _presets("rigs")
 any_preset = _presets("", "populations", "methods")
 
 

@@ -27,6 +27,7 @@ ROOMS = (
     Room("scenario", "", "Scenarios", ("run", "design", "export", "study", "init")),
     Room("method", "methods", "Methods", ("compare --method", "tune", "init --kind method")),
     Room("population", "populations", "Populations", ("compare", "tune", "init --kind population")),
+    Room("rig", "rigs", "Rigs", ("advise --rig",)),
     Room("stack", "stacks", "Piezo stacks for a method's [actuator.tip]", ()),
 )
 
@@ -34,7 +35,7 @@ ROOMS = (
 def presets(
     json: Json = False,
 ) -> None:
-    """List what comes with breakaway: scenarios, methods, populations and piezo stacks."""
+    """List what comes with breakaway: scenarios, methods, populations, rigs and piezo stacks."""
     from breakaway.model.scenario.files import preset_descriptions
 
     found = {room: preset_descriptions(room.folder) for room in ROOMS}

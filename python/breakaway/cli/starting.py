@@ -7,7 +7,7 @@ import os
 import shlex
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,6 +24,9 @@ from breakaway.cli.starts import (
 )
 from breakaway.errors import OutputError
 
+if TYPE_CHECKING:
+    from breakaway.model.scenario.model import Model
+
 
 class SchemaKind(StrEnum):
     """Kinds of files that have a JSON Schema."""
@@ -31,6 +34,8 @@ class SchemaKind(StrEnum):
     SCENARIO = "scenario"
     POPULATION = "population"
     METHOD = "method"
+    RIG = "rig"
+    LIMITS = "limits"
     STUDY = "study"
     TUNING = "tuning"
 
@@ -55,14 +60,24 @@ def schema(
 
 
 def _schema(kind: SchemaKind) -> dict[str, Any]:
-    from breakaway.model.scenario import Method, PartPopulation, scenario_schema
+    from breakaway.model.scenario import (
+        ExtractionRig,
+        HarmLimits,
+        Method,
+        PartPopulation,
+        scenario_schema,
+    )
 
+    models: dict[SchemaKind, type[Model]] = {
+        SchemaKind.METHOD: Method,
+        SchemaKind.POPULATION: PartPopulation,
+        SchemaKind.RIG: ExtractionRig,
+        SchemaKind.LIMITS: HarmLimits,
+    }
     if kind is SchemaKind.SCENARIO:
         return scenario_schema()
-    if kind is SchemaKind.METHOD:
-        return Method.model_json_schema()
-    if kind is SchemaKind.POPULATION:
-        return PartPopulation.model_json_schema()
+    if kind in models:
+        return models[kind].model_json_schema()
     if kind is SchemaKind.TUNING:
         from breakaway.ask.tuning import Tuning
 
@@ -78,10 +93,10 @@ def init(
     preset: Annotated[
         str | None,
         typer.Option(
-            help="Preset or file that the values come from: a scenario, population or method; for "
-            "a study the scenario, and for a tuning the method, that it is about.",
+            help="Preset or file that the values come from: a scenario, population, method or rig; "
+            "for a study the scenario, and for a tuning the method, that it is about.",
             metavar="NAME_OR_FILE",
-            show_default="paper_as_computed, seized_parts or steady_feed",
+            show_default="paper_as_computed, seized_parts, steady_feed or screw_jack",
             autocompletion=any_preset,
         ),
     ] = None,
@@ -89,9 +104,9 @@ def init(
 ) -> None:
     """Write a commented file to edit: every key with its meaning, unit and valid range.
 
-    It writes a scenario unless --kind asks for a population, a method, a study
-    (sweep, robustness, sensitivity, compare, agreement) or a tuning. The file
-    runs as it is; the last line of the output says how.
+    It writes a scenario unless --kind asks for a population, a method, a rig,
+    limits, a study (sweep, robustness, sensitivity, compare, agreement) or a
+    tuning. The file runs as it is; the last line of the output says how.
     """
     from breakaway.base.output import write_atomically
     from breakaway.model.scenario.template import template

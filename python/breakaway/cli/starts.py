@@ -18,6 +18,8 @@ class StartKind(StrEnum):
     SCENARIO = "scenario"
     POPULATION = "population"
     METHOD = "method"
+    RIG = "rig"
+    LIMITS = "limits"
     SWEEP = "sweep"
     ROBUSTNESS = "robustness"
     SENSITIVITY = "sensitivity"
@@ -29,6 +31,7 @@ class StartKind(StrEnum):
 PRESET = {
     StartKind.POPULATION: "seized_parts",
     StartKind.METHOD: "steady_feed",
+    StartKind.RIG: "screw_jack",
     StartKind.TUNING: "steady_feed",
 }
 """Preset that a kind starts from."""
@@ -39,6 +42,8 @@ USE = {
     StartKind.SCENARIO: "breakaway run {file}",
     StartKind.POPULATION: "breakaway compare {file} --runs 100 --out result",
     StartKind.METHOD: "breakaway compare --method {file} --runs 100 --out result",
+    StartKind.RIG: "breakaway advise seized_parts --rig {file} --budget-s 30 --out result",
+    StartKind.LIMITS: "breakaway advise seized_parts --limits {file} --budget-s 30 --out result",
     StartKind.TUNING: "breakaway tune {file} --out result",
 }
 """Command that takes a file of a kind."""
@@ -82,7 +87,7 @@ def start(kind: StartKind, preset: str, name: str) -> Start:
     {'disturbance.var': [0.0, 0.1, 0.2, 0.3, 0.4, 0.5]}
 
     """
-    from breakaway.model.scenario import load_method, load_population, load_scenario
+    from breakaway.model.scenario import load_method, load_population, load_rig, load_scenario
 
     label = {"name": name, "description": f"Made from {preset}"}
     if kind is StartKind.SCENARIO:
@@ -91,9 +96,21 @@ def start(kind: StartKind, preset: str, name: str) -> Start:
         return Start(_labeled(load_population(preset), label), "A population of parts.")
     if kind is StartKind.METHOD:
         return Start(_labeled(load_method(preset), label), "A method of extraction.")
+    if kind is StartKind.RIG:
+        return Start(_labeled(load_rig(preset), label), "A rig that frees parts.")
+    if kind is StartKind.LIMITS:
+        return Start(_limits(name), "What a part and its host may suffer.")
     if kind is StartKind.TUNING:
         return _tuning(preset, label, load_method(preset))
     return _study(kind, preset, label, load_scenario(preset))
+
+
+def _limits(name: str) -> Model:
+    """Give limits of a neck of 10 mm x 10 mm, to be replaced by those of the part."""
+    from breakaway.model.scenario import HarmLimits, StressLimit
+
+    neck = StressLimit(place="neck", section_m2=1e-4, material="inconel_718", share=0.3)
+    return HarmLimits(name=name, stresses=[neck], jump_max_m=5e-4, release_velocity_max_m_per_s=0.3)
 
 
 def _labeled(model: Model, label: Mapping[str, str]) -> Model:

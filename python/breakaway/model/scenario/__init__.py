@@ -41,9 +41,12 @@ from breakaway.model.scenario.disturbance import (
     GaussianDisturbance,
     UniformDisturbance,
 )
+from breakaway.model.scenario.extraction_rig import ExtractionRig
 from breakaway.model.scenario.files import (
+    load_limits,
     load_method,
     load_population,
+    load_rig,
     load_scenario,
     load_stack,
     parse_scenario,
@@ -52,6 +55,7 @@ from breakaway.model.scenario.files import (
     scenario_schema,
     scenario_toml,
 )
+from breakaway.model.scenario.harm import HarmLimits, StressLimit
 from breakaway.model.scenario.joint import (
     CoulombStiction,
     ElastoPlastic,
@@ -97,6 +101,7 @@ __all__ = [
     "DriftOverTime",
     "DriftOverTravel",
     "ElastoPlastic",
+    "ExtractionRig",
     "FeedAxis",
     "FeedSettings",
     "FieldDisturbance",
@@ -109,6 +114,7 @@ __all__ = [
     "GaussianDisturbance",
     "Gentleness",
     "Gms",
+    "HarmLimits",
     "IdealActuator",
     "InterferenceNormalForce",
     "Law",
@@ -142,6 +148,7 @@ __all__ = [
     "StackPulses",
     "SteadyFeed",
     "StepReference",
+    "StressLimit",
     "StribeckJoint",
     "TemperatureNormalForce",
     "TimedImpacts",
@@ -156,8 +163,10 @@ __all__ = [
     "VibratedFeed",
     "Watch",
     "gain_sets",
+    "load_limits",
     "load_method",
     "load_population",
+    "load_rig",
     "load_scenario",
     "load_stack",
     "parse_scenario",

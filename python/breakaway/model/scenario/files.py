@@ -15,6 +15,8 @@ from breakaway.base.output import write_atomically
 from breakaway.base.reading import table_of, text_of
 from breakaway.errors import ScenarioError
 from breakaway.model.scenario.actuator import Piezo
+from breakaway.model.scenario.extraction_rig import ExtractionRig
+from breakaway.model.scenario.harm import HarmLimits
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.model import Model
 from breakaway.model.scenario.population import PartPopulation
@@ -23,7 +25,7 @@ from breakaway.model.scenario.scenario import Scenario
 AnyModel = TypeVar("AnyModel", bound=Model)
 
 PRESETS = files("breakaway.model.presets")
-FOLDERS = ("", "populations", "methods", "stacks")
+FOLDERS = ("", "populations", "methods", "stacks", "rigs")
 """Folders of presets; that of scenarios has no name."""
 
 
@@ -32,7 +34,7 @@ def preset_names(folder: str = "") -> list[str]:
 
     Parameters
     ----------
-    folder : {"", "populations", "methods", "stacks"}, optional
+    folder : {"", "populations", "methods", "stacks", "rigs"}, optional
         Which presets: scenarios, where it is left out.
 
     """
@@ -46,7 +48,7 @@ def preset_descriptions(folder: str = "") -> dict[str, str]:
 
     Parameters
     ----------
-    folder : {"", "populations", "methods", "stacks"}, optional
+    folder : {"", "populations", "methods", "stacks", "rigs"}, optional
         Which presets: scenarios, where it is left out.
 
     Examples
@@ -160,6 +162,59 @@ def load_stack(source: str | Path) -> Piezo:
     """
     check_arguments(load_stack, locals(), ScenarioError)
     return _load(Piezo, source, "stacks")
+
+
+def load_rig(source: str | Path) -> ExtractionRig:
+    """Load a rig that frees parts: a preset by its name, or a TOML file by its path.
+
+    Each preset says where its figures are from, and which of them are assumed.
+
+    Parameters
+    ----------
+    source : str or Path
+        The name of a preset, such as ``screw_jack``, or the path of a file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such preset or file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> load_rig("screw_jack").actuator.kind
+    'feed_axis'
+
+    """
+    check_arguments(load_rig, locals(), ScenarioError)
+    return _load(ExtractionRig, source, "rigs")
+
+
+def load_limits(path: str | Path) -> HarmLimits:
+    """Load what a part and its host may suffer from a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    ScenarioError
+        There is no such file, it is not TOML, or a value is not valid.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "limits.toml"
+    ...     _ = path.write_text("jump_max_m = 2.5e-4")
+    ...     load_limits(path).jump_max_m
+    0.00025
+
+    """
+    check_arguments(load_limits, locals(), ScenarioError)
+    path = Path(path)
+    return parse_toml(HarmLimits, text_of(path, ScenarioError), path.name)
 
 
 def _load(model: type[AnyModel], source: str | Path, folder: str) -> AnyModel:
