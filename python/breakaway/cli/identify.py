@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from breakaway.base.reading import is_file, is_folder, is_there
+from breakaway.base.reading import is_file
 from breakaway.cli import identify_options as options
 from breakaway.cli.identified import law_tables, regression_tables
 from breakaway.cli.identify_options import LawChoice, LossChoice, MotionChoice
@@ -17,6 +17,7 @@ from breakaway.cli.measured import measured, pair, rig_of
 from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Rig, Use
 from breakaway.cli.progress import counted
 from breakaway.cli.show import busy, say, say_json, say_written
+from breakaway.cli.targets import check_target
 
 if TYPE_CHECKING:
     from breakaway.measure.identification import Identification, JointFile
@@ -59,7 +60,9 @@ def identify(
     the log cannot tell. Ctrl-C ends a fit and shows the best so far.
     """
     if out is not None:
-        _check_target(log, out)
+        from breakaway.measure.identification import JointFile
+
+        check_target([log], out, JointFile.load, "joint file")
     page = _page(log, out) if report else None
     only_laws = {
         "--fix": fix,
@@ -268,20 +271,3 @@ def _number(text: str, option: str) -> float:
     if not math.isfinite(value):
         raise LogError(f"{option}: {text!r} is not a finite number")
     return value
-
-
-def _check_target(log: Path, out: Path) -> None:
-    """Refuse to write over the log, or over anything but another joint file."""
-    from breakaway.base.output import refuse_to_overwrite
-    from breakaway.errors import OutputError, ScenarioError
-    from breakaway.measure.identification import JointFile
-
-    refuse_to_overwrite(log, out)
-    if not is_folder(out.parent):
-        reason = "Not a directory" if is_there(out.parent) else "its folder is missing"
-        raise OutputError(f"{out}: cannot be written: {reason}")
-    if is_file(out):
-        try:
-            JointFile.load(out)
-        except ScenarioError:
-            raise OutputError(f"{out}: exists and is not a joint file; give another name") from None

@@ -96,6 +96,7 @@ def lay_file_over(scenario: Scenario, joint: JointFile, name: str) -> Scenario:
         dropped="; ".join(
             f"{one} = {value:.5g} ({NO_PLACE[one]})" for one, value in joint.unplaced.items()
         ),
+        at_least="; ".join(f"{field} ({why})" for field, why in joint.at_least.items()),
     )
     try:
         return scenario.with_(
