@@ -20,6 +20,7 @@ from breakaway.model.scenario.distribution import Distribution, LogNormal, LogUn
 from breakaway.model.scenario.files import load_population
 from breakaway.model.scenario.population import QUANTITIES, PartDistributions, PartPopulation
 
+STRIBECK = "joint.stribeck_velocity_m_per_s"
 LISTED = 20
 """Most parts that a description names."""
 CLOSEST = 1.0 - 1e-6
@@ -79,7 +80,7 @@ def parts_of_pulls(
     >>> from breakaway.measure.identification import fit_population
     >>> parts = parts_of_pulls(fit_population([300.0, 420.0, 510.0]), mass_kg=1.5)
     >>> parts.parts.stiction_n.median, parts.parts.mass_kg.values
-    (400.53..., (1.5,))
+    (400.54..., (1.5,))
     >>> "stiction_ratio" in parts.assumed, "mass_kg" in parts.assumed
     (True, False)
 
@@ -99,6 +100,11 @@ def parts_of_pulls(
         assumed["presliding_m"] = why_range
     parts: dict[str, Distribution] = {one: getattr(usual.parts, one) for one in QUANTITIES}
     parts |= {"presliding_m": presliding} | fitted
+    speeds = [file.assumed[STRIBECK] for file in joints if STRIBECK in file.assumed]
+    if speeds:
+        low, high = min(one.low for one in speeds), max(one.high for one in speeds)
+        parts["stribeck_velocity_m_per_s"] = LogUniform(low=low, high=high)
+        assumed["stribeck_velocity_m_per_s"] = "assumed: all ranges that single logs leave open"
     shared = usual.model_dump(exclude={"name", "description", "parts", "correlations", "assumed"})
     return PartPopulation(
         **shared,

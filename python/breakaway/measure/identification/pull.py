@@ -10,6 +10,7 @@ import numpy as np
 from breakaway.base.one_line import counted
 from breakaway.errors import LogError
 from breakaway.measure.identification.events import BreakawayEvent, BreakawayReport, at_part_quiet
+from breakaway.measure.identification.sliding import SlidingLevel
 from breakaway.measure.identification.stretches import noise
 from breakaway.measure.logs.log import Array, Log
 
@@ -21,6 +22,9 @@ RISE = (0.05, 0.5)
 
 FEWEST_ROWS = 8
 """Fewest rows in that share of the rise that tell a stiffness."""
+
+LARGEST = 3.0
+"""The largest of some hundred noisy samples about a peak exceeds it by so many times the noise."""
 
 YIELD_FACTOR = 2.0
 """Inertia hides how steeply friction falls: up to this many times as steeply as the load."""
@@ -92,26 +96,36 @@ def pull_of(report: BreakawayReport, log: Log) -> Pull:
         why = "; ".join(report.refused) or "it has no start from rest"
         raise LogError(f"{log.name}: no joint comes of this log: {why}")
     event = report.events[0]
-    rows = _Rows.of(report, log, event)
+    level = _steady(report, event)
+    rows = _Rows.of(report, log, event, level)
     stiffness, bend_n = rows.stiffness()
     zero_n = rows.zero_error_n(report)
-    level = next((one for one in report.sliding if one.end_s > event.time_s), None)
     sliding = None
-    if event.sliding_force_n is not None and event.sliding_force_n > 0.0:
-        spread_n = 0.0 if level is None else level.spread_n
-        half = Z95 * math.hypot(spread_n, event.sliding_error_n or 0.0) + zero_n
-        sliding = _around(event.sliding_force_n, half, half)
-    held, raised = _no_less(_stiction(event, zero_n, bend_n), sliding)
+    if rows.slide_n is not None and level is not None:
+        gain = 0.0 if report.rig is None else 0.01 * report.rig.force_calibration_percent
+        errors = (level.spread_n, report.offset_error_n or 0.0, gain * rows.slide_n)
+        half = Z95 * math.hypot(*errors) + zero_n
+        sliding = _around(rows.slide_n, half, half)
     return Pull(
         event=event,
-        stiction_n=held,
+        stiction_n=_no_less(_stiction(event, zero_n, bend_n), sliding),
         coulomb_n=sliding,
         stiffness_n_per_m=stiffness,
         release_speed_m_per_s=rows.release_speed(),
         sliding_speed_m_per_s=None if level is None else level.speed_m_per_s,
         zero_error_n=zero_n,
-        notes=(*_notes(report, event, zero_n, bend_n), *raised),
+        notes=tuple(_notes(report, event, level, zero_n, bend_n)),
     )
+
+
+def _steady(report: BreakawayReport, event: BreakawayEvent) -> SlidingLevel | None:
+    """Give the longest steady sliding after a start: what is slid within a slip is no level."""
+    after = [
+        level
+        for level in report.sliding
+        if level.direction == event.direction and level.end_s > event.time_s
+    ]
+    return max(after, key=lambda level: level.end_s - level.start_s, default=None)
 
 
 def is_pull(report: BreakawayReport) -> bool:
@@ -123,22 +137,22 @@ def is_pull(report: BreakawayReport) -> bool:
 def _stiction(event: BreakawayEvent, zero_n: float, bend_n: float) -> Seen:
     value = event.breakaway_force_n
     half = Z95 * event.breakaway_error_n + zero_n
+    below = half + LARGEST * event.force_noise_n
     if event.is_lower_bound:
-        low = max(value - half, 0.0)
+        low = max(value - below, 0.0)
         return Seen(value=value, low=low, high=math.inf, at_least=event.reason)
-    return _around(value, half, half + (event.unseen_gain_n or 0.0) + bend_n)
+    return _around(value, below, half + (event.unseen_gain_n or 0.0) + bend_n)
 
 
-def _no_less(held: Seen, sliding: Seen | None) -> tuple[Seen, tuple[str, ...]]:
-    """Give stiction that is no less than the sliding friction, and say so where it was raised."""
-    if sliding is None or held.value >= sliding.value:
-        return held, ()
-    note = (
-        f"the largest load before the slip, {held.value:.4g} N, is below the load of sliding; a "
-        "joint holds at least what it slides with, so that counts as its stiction"
+def _no_less(held: Seen, sliding: Seen | None) -> Seen:
+    """Give stiction that is no less than sliding friction: where no peak stands out, a bound."""
+    if sliding is None or held.value > sliding.value:
+        return held
+    why = (
+        f"the largest load before the slip, {held.value:.4g} N, does not exceed that of sliding, "
+        f"{sliding.value:.4g} N, and a joint holds at least what it slides with"
     )
-    raised = replace(held, value=sliding.value, high=max(held.high, sliding.high))
-    return raised, (note,)
+    return replace(held, value=sliding.value, high=math.inf, at_least=held.at_least or why)
 
 
 def _around(value: float, below: float, above: float) -> Seen:
@@ -146,9 +160,17 @@ def _around(value: float, below: float, above: float) -> Seen:
 
 
 def _notes(
-    report: BreakawayReport, event: BreakawayEvent, zero_n: float, bend_n: float
+    report: BreakawayReport,
+    event: BreakawayEvent,
+    level: SlidingLevel | None,
+    zero_n: float,
+    bend_n: float,
 ) -> list[str]:
-    notes = []
+    notes = [
+        "stiction_n is the load that broke the joint loose at this loading rate; a law whose "
+        "friction falls with speed, such as LuGre, lets go below its F_s, the more so the faster "
+        "the load rises"
+    ]
     if len(report.events) > 1:
         later = counted(len(report.events) - 1, "later start")
         notes.append(f"the first start from rest counts, at {event.time_s:.6g} s; not {later}")
@@ -161,6 +183,11 @@ def _notes(
         notes.append(
             f"the joint yields before its peak; its stiction may lie up to {bend_n:.3g} N above "
             "the largest load, and the interval allows for that"
+        )
+    if level is not None:
+        notes.append(
+            f"coulomb_n is the load of sliding at {level.speed_m_per_s:.3g} m/s; if friction falls "
+            "further above that speed, it is less, and so it is in the draws"
         )
     if report.spikes:
         notes.append(f"{counted(len(report.spikes), 'single sample')} of the force count as none")
@@ -177,16 +204,20 @@ class _Rows:
     begin: int
     peak: int
     event: BreakawayEvent
+    slide_n: float | None
     noise_m: float
     joint_alone: bool
     stiffness_error: float
     """Relative standard uncertainty of the rig's compliance, as a part of the joint's."""
 
     @classmethod
-    def of(cls, report: BreakawayReport, log: Log, event: BreakawayEvent) -> _Rows:
+    def of(
+        cls, report: BreakawayReport, log: Log, event: BreakawayEvent, level: SlidingLevel | None
+    ) -> _Rows:
         at_part = at_part_quiet(log, report.rig)[0]
         since = event.time_s - event.rest_s if event.load_start_s is None else event.load_start_s
         rig = report.rig
+        slide = 0.0 if level is None else level.force_n - (report.offset_n or 0.0)
         return cls(
             t_s=at_part.t_s,
             way_m=event.direction * at_part.position_m,
@@ -194,6 +225,7 @@ class _Rows:
             begin=int(np.searchsorted(at_part.t_s, since)),
             peak=int(np.searchsorted(at_part.t_s, event.time_s)),
             event=event,
+            slide_n=event.direction * slide if event.direction * slide > 0.0 else None,
             noise_m=noise(log.position_m),
             joint_alone=rig is not None and rig.stiffness_is_told,
             stiffness_error=0.0
@@ -252,7 +284,7 @@ class _Rows:
 
     def _fall_n_per_m(self) -> float:
         """Give how steeply the load falls over the way, from its peak to half of the fall."""
-        slide = self.event.sliding_force_n
+        slide = self.slide_n
         if slide is None:
             return 0.0
         load = self.load_n[self.peak :]
@@ -265,7 +297,7 @@ class _Rows:
 
     def release_speed(self) -> Seen | None:
         """Give the largest speed, over two samples, from the peak until the load is the level."""
-        slide = self.event.sliding_force_n
+        slide = self.slide_n
         if slide is None:
             return None
         down = np.flatnonzero(self.load_n[self.peak :] <= slide)

@@ -31,12 +31,15 @@ from breakaway.model.scenario.files import load_population
 METHOD = "breakaway event"
 USUAL = "seized_parts"
 """The population whose assumed ranges stand for what a pull does not tell."""
+WIDTH = 10.0
+"""The Stribeck velocity is drawn from at least so many times less than its upper end."""
 RANGES_NOTE = (
     f"the ranges of what is assumed are those of the preset {USUAL}; no measured population is "
     "behind them"
 )
 BOUND_FACTOR = 3.0
 """Above a bound from below, values up to this many times as large are drawn at least."""
+VISCOUS = "joint.viscous_n_s_per_m"
 VISCOUS_SPEED_M_PER_S = 1.0
 """Viscous friction is assumed to be at most the sliding friction at this speed."""
 
@@ -62,7 +65,10 @@ def joint_from_pull(
     A peak that the log may have missed gives a bound from below: its interval has no upper end, and
     ``at_least`` says why. So does a stiffness where no rig file tells the rig's: it is that of
     joint and rig in series. What a pull cannot tell is in ``assumed``, as a usual value and a wide
-    range: those of the preset ``seized_parts``, which are assumed as well. ``draws`` vary all.
+    range: those of the preset ``seized_parts``, which are assumed as well. The Stribeck velocity is
+    below what would leave no friction at speed, v / sqrt(ln(F_s/R)) with the load R of sliding at
+    v. ``draws`` vary all; each slides with what was seen at that speed, so its ``coulomb_n`` is
+    less where friction would still fall above it.
 
     Parameters
     ----------
@@ -101,8 +107,8 @@ def joint_from_pull(
     (90.0, 40.0, 2.0)
     >>> joint.at_least
     {'joint.stiffness_n_per_m': "it is that of joint and rig in series; a rig file ..."}
-    >>> joint.assumed["joint.stribeck_velocity_m_per_s"].low
-    0.005
+    >>> joint.assumed["joint.viscous_n_s_per_m"].high
+    40.0
 
     """
     check_arguments(joint_from_pull, locals(), LogError)
@@ -199,10 +205,26 @@ def _assumed(pull: Pull, mass_kg: float | None) -> dict[str, Assumed]:
         found["part.mass_kg"] = _range(*ends["mass_kg"], why)
     top = (stiction if pull.coulomb_n is None else pull.coulomb_n).value / VISCOUS_SPEED_M_PER_S
     why = "the part slides at one speed; what is viscous there is in coulomb_n"
-    found["joint.viscous_n_s_per_m"] = Assumed(value=0.0, low=0.0, high=top, why=why)
-    why = "how friction falls with speed takes sliding at many speeds, from creeping to fast"
-    found["joint.stribeck_velocity_m_per_s"] = _range(*ends["stribeck_velocity_m_per_s"], why)
+    found[VISCOUS] = Assumed(value=0.0, low=0.0, high=top, why=why)
+    found["joint.stribeck_velocity_m_per_s"] = _stribeck(pull, *ends["stribeck_velocity_m_per_s"])
     return found
+
+
+def _stribeck(pull: Pull, low: float, high: float) -> Assumed:
+    """Give the range of v_s: no higher than what lets friction fall to the level that was seen.
+
+    ::
+
+        F_c = (R - F_s e) / (1 - e) > 0,  e = exp(-(v/v_s)²)   =>   v_s < v / sqrt(ln(F_s/R))
+    """
+    why = "how friction falls with speed takes sliding at many speeds, from creeping to fast"
+    sliding, v = pull.coulomb_n, pull.sliding_speed_m_per_s
+    if sliding is not None and v is not None and pull.stiction_n.value > sliding.value:
+        most = v / math.sqrt(math.log(pull.stiction_n.value / sliding.value))
+        if most < high:
+            why += f"; friction that has fallen so far at {v:.3g} m/s has one below {most:.3g} m/s"
+            low, high = min(low, most / WIDTH), most
+    return _range(low, high, why)
 
 
 RANGES = (
@@ -252,21 +274,20 @@ def _bristle(
 def _draws(pull: Pull, assumed: Mapping[str, Assumed], mass_kg: float | None, seed: int) -> Draws:
     """Draw joints: what was seen by its interval, what is assumed by its range.
 
-    A joint holds at least what it slides with.
+    A joint holds at least what it slides with, and slides with what was seen at that speed::
+
+        F_c = R - σ₂ v - (F_s - R + σ₂ v) e / (1 - e),  e = exp(-(v/v_s)²)
     """
     rng = np.random.default_rng(seed)
     kept: dict[str, Array] = {}
     while len(kept.get("joint.stiction_n", ())) < DRAWS:
         rows = _rows(pull, assumed, mass_kg, rng)
-        good = np.all([column > 0.0 for p, column in rows.items() if p not in ZERO_OR_MORE], axis=0)
-        rows["joint.stiction_n"] = np.maximum(rows["joint.stiction_n"], rows["joint.coulomb_n"])
+        positive = [column > 0.0 for path, column in rows.items() if path != VISCOUS]
+        good = np.all(positive, axis=0)
         kept = {p: np.append(kept.get(p, ()), column[good]) for p, column in rows.items()}
     values = {path: column[:DRAWS].tolist() for path, column in kept.items()}
-    return Draws(source="intervals of what was seen, ranges of what is assumed", seed=seed,
-                 values=values)  # fmt: skip
-
-
-ZERO_OR_MORE = ("joint.viscous_n_s_per_m",)
+    source = "intervals of what was seen, ranges of what is assumed"
+    return Draws(source=source, seed=seed, values=values)
 
 
 def _rows(
@@ -277,11 +298,15 @@ def _rows(
         "joint.coulomb_n": pull.coulomb_n,
         "joint.stiffness_n_per_m": pull.stiffness_n_per_m,
     }
-    rows = {}
-    for path in dict.fromkeys([*seen, *assumed]):
-        one: Seen | Assumed | None = assumed.get(path, seen.get(path))
-        assert one is not None
-        rows[path] = one.draws(rng, DRAWS)
+    known: dict[str, Seen | Assumed] = {p: one for p, one in seen.items() if one is not None}
+    rows = {path: one.draws(rng, DRAWS) for path, one in (known | dict(assumed)).items()}
     if mass_kg is not None:
         rows["part.mass_kg"] = np.full(DRAWS, mass_kg)
+    level = rows["joint.coulomb_n"]
+    rows["joint.stiction_n"] = np.maximum(rows["joint.stiction_n"], level)
+    v = pull.sliding_speed_m_per_s
+    if pull.coulomb_n is not None and v is not None:
+        dry = level - rows[VISCOUS] * v
+        e = np.exp(-((v / rows["joint.stribeck_velocity_m_per_s"]) ** 2))
+        rows["joint.coulomb_n"] = dry - (rows["joint.stiction_n"] - dry) * e / (1.0 - e)
     return rows
