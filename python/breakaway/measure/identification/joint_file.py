@@ -8,12 +8,13 @@ from typing import Annotated, Any
 
 import numpy as np
 import tomli_w
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from breakaway._core import __version__
 from breakaway.base.arguments import check_arguments
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import text_of
+from breakaway.base.text import shown
 from breakaway.errors import LogError, ScenarioError
 from breakaway.measure.identification.curve import peak_in_words
 from breakaway.measure.identification.inertia_friction import InertiaFrictionFit
@@ -39,6 +40,15 @@ NO_PLACE = {
 """What a log can tell of a joint and no scenario has a place for, with the reason."""
 
 METHOD = "IDIM least squares (Janot, Gautier, Brunot 2019)"
+
+
+def _number(end: object) -> object:
+    """Read an infinite end that JSON, which has no number for it, gives as a word."""
+    return float(str(end)) if end in ("inf", "-inf") else end
+
+
+End = Annotated[float, Field(allow_inf_nan=True), BeforeValidator(_number)]
+"""An end of an interval, which may be infinite."""
 
 
 class Settings(Model):
@@ -247,7 +257,7 @@ class JointFile(Model):
     joint: Joint
     rig: Rig
     standard_error: dict[str, NotNegative]
-    interval: dict[str, list[Annotated[float, Field(allow_inf_nan=True)]]]
+    interval: dict[str, list[End]]
     """Name of a parameter -> its ends; the upper one is infinite for a bound from below."""
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
@@ -259,6 +269,13 @@ class JointFile(Model):
     unplaced: dict[str, float] = Field(default_factory=dict)
     pull: PullFigures | None = None
     draws: Annotated[Draws | None, Field(repr=False)] = None
+
+    @model_validator(mode="after")
+    def _says_what_has_no_place(self) -> JointFile:
+        for name in self.unplaced:
+            if name not in NO_PLACE:
+                raise ValueError(f"unplaced: {shown(name)} is not one of {', '.join(NO_PLACE)}")
+        return self
 
     @classmethod
     def from_fit(cls, fit: InertiaFrictionFit, log: Log) -> JointFile:
