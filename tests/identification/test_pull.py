@@ -239,6 +239,56 @@ def test_a_log_without_a_start_from_rest_gives_no_joint() -> None:
         joint_from_pull(log)
 
 
+def test_a_force_of_the_wrong_sign_is_named() -> None:
+    log = pulled(3000.0, 1500.0)
+    turned = Log(t_s=log.t_s, position_m=log.position_m, force_n=-log.force_n)
+    with pytest.raises(LogError, match=r"slides against the force.* another sign in the mapping"):
+        joint_from_pull(turned)
+
+
+def test_a_slow_pull_without_a_peak_still_has_draws() -> None:
+    t_s = np.arange(4000) / 100.0
+    noise = np.random.default_rng(0).standard_normal((2, 4000))
+    log = Log(
+        t_s=t_s,
+        position_m=1e-5 * np.maximum(t_s - 10.0, 0.0) + 1e-8 * noise[0],
+        force_n=50.0 * np.minimum(t_s, 10.0) + noise[1],
+    )
+    joint = joint_from_pull(log)
+    assert "does not exceed that of sliding" in joint.at_least["joint.stiction_n"]
+    rows = {path: np.array(one.values) for path, one in joint.vary().items()}
+    assert all((column > 0.0).all() for column in rows.values())
+    assert (rows["joint.stiction_n"] >= rows["joint.coulomb_n"]).all()
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    ways=st.lists(st.floats(-1e-3, 1e-3), min_size=3, max_size=6),
+    loads=st.lists(st.floats(-1e4, 1e4), min_size=3, max_size=6),
+    noise=st.sampled_from([0.0, 1e-9, 1e-4]),
+)
+def test_any_log_gives_a_joint_that_can_be_kept_or_is_refused(
+    ways: list[float], loads: list[float], noise: float
+) -> None:
+    t_s = np.linspace(0.0, 2.0, 400)
+    rng = np.random.default_rng(1)
+    x, force = (
+        np.interp(t_s, np.linspace(0.2, 2.0, len(knots)), knots)
+        + noise * scale * rng.standard_normal(400)
+        for knots, scale in ((ways, 1.0), (loads, 1e6))
+    )
+    try:
+        joint = joint_from_pull(Log(t_s=t_s, position_m=x, force_n=force), mass_kg=1.0)
+    except LogError:
+        return
+    assert JointFile.parse(joint.model_dump(mode="json")) == joint
+    for path, one in joint.vary().items():
+        values = np.array(one.values)
+        assert np.isfinite(values).all() and (values >= 0.0).all(), path
+    for low, high in joint.interval.values():
+        assert 0.0 <= low <= high
+
+
 @pytest.mark.parametrize("mass_kg", [0.0, -1.0, math.nan, 1e7])
 def test_an_impossible_mass_is_refused(mass_kg: float) -> None:
     with pytest.raises(LogError, match=r"mass_kg: .* is not > 0 and <= 1e6"):

@@ -98,6 +98,7 @@ def pull_of(report: BreakawayReport, log: Log) -> Pull:
     event = report.events[0]
     level = _steady(report, event)
     rows = _Rows.of(report, log, event, level)
+    _check_sign(log, event, rows, level)
     stiffness, bend_n = rows.stiffness()
     zero_n = rows.zero_error_n(report)
     sliding = None
@@ -116,6 +117,18 @@ def pull_of(report: BreakawayReport, log: Log) -> Pull:
         zero_error_n=zero_n,
         notes=tuple(_notes(report, event, level, zero_n, bend_n)),
     )
+
+
+def _check_sign(log: Log, event: BreakawayEvent, rows: _Rows, level: SlidingLevel | None) -> None:
+    """Refuse a part that moves against its force."""
+    slides = 1.0 if level is None or rows.slide_n is not None else -1.0
+    for force, does in ((event.breakaway_force_n, "starts to move"), (slides, "slides")):
+        if force <= 0.0:
+            raise LogError(
+                f"{log.name}: the part {does} against the force, at {event.time_s:.6g} s; a force "
+                "counts positive where it drives the position up: give it another sign in the "
+                "mapping, or its offset"
+            )
 
 
 def _steady(report: BreakawayReport, event: BreakawayEvent) -> SlidingLevel | None:

@@ -31,6 +31,8 @@ from breakaway.model.scenario.files import load_population
 METHOD = "breakaway event"
 USUAL = "seized_parts"
 """The population whose assumed ranges stand for what a pull does not tell."""
+ROUNDS = 1000
+"""Most times that draws which no joint can have are drawn again."""
 WIDTH = 10.0
 """The Stribeck velocity is drawn from at least so many times less than its upper end."""
 RANGES_NOTE = (
@@ -280,11 +282,18 @@ def _draws(pull: Pull, assumed: Mapping[str, Assumed], mass_kg: float | None, se
     """
     rng = np.random.default_rng(seed)
     kept: dict[str, Array] = {}
-    while len(kept.get("joint.stiction_n", ())) < DRAWS:
+    for _ in range(ROUNDS):
         rows = _rows(pull, assumed, mass_kg, rng)
         positive = [column > 0.0 for path, column in rows.items() if path != VISCOUS]
         good = np.all(positive, axis=0)
         kept = {p: np.append(kept.get(p, ()), column[good]) for p, column in rows.items()}
+        if len(kept["joint.stiction_n"]) >= DRAWS:
+            break
+    else:
+        raise LogError(
+            "no joint comes of this log: hardly any joint has what it shows; the load at rest or "
+            "the noise is as large as the forces: give the offset, or record again"
+        )
     values = {path: column[:DRAWS].tolist() for path, column in kept.items()}
     source = "intervals of what was seen, ranges of what is assumed"
     return Draws(source=source, seed=seed, values=values)
@@ -308,5 +317,9 @@ def _rows(
     if pull.coulomb_n is not None and v is not None:
         dry = level - rows[VISCOUS] * v
         e = np.exp(-((v / rows["joint.stribeck_velocity_m_per_s"]) ** 2))
+        if pull.stiction_n.at_least:  # as far as F_c > 0 allows
+            least = np.maximum(level, pull.stiction_n.value)
+            most = least + rng.random(DRAWS) * (np.maximum(dry / e, least) - least)
+            rows["joint.stiction_n"] = np.minimum(rows["joint.stiction_n"], most)
         rows["joint.coulomb_n"] = dry - (rows["joint.stiction_n"] - dry) * e / (1.0 - e)
     return rows

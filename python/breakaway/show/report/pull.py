@@ -17,7 +17,7 @@ from breakaway.measure.identification.joint_file import JointFile
 from breakaway.measure.logs.log import Log
 from breakaway.model.units import unit_of, words_of
 from breakaway.show.plots.events import plot_breakaway
-from breakaway.show.report.page import drawn_svg, render, significant
+from breakaway.show.report.page import drawn_svg, render
 
 
 @dataclass(frozen=True)
@@ -81,21 +81,28 @@ def _headline(joint: JointFile | None) -> str:
 def _seen(joint: JointFile | None) -> Iterator[Row]:
     if joint is None:
         return
-    known = {path.split(".")[1]: value for path, value in joint.scenario_changes().items()}
+    known: dict[str, float] = {
+        path.split(".")[1]: value for path, value in joint.scenario_changes().items()
+    }
+    if joint.pull is not None and joint.pull.release_speed_m_per_s is not None:
+        known["release_speed_m_per_s"] = joint.pull.release_speed_m_per_s
     for name, (low, high) in joint.interval.items():
-        value = known.get(name, getattr(joint.pull, name, None))
         why = joint.at_least.get(f"joint.{name}", "")
-        end = "" if isinf(high) else significant(high)
+        end = "" if isinf(high) else _number(high)
         bound = "at least" if why else ""
-        yield Row(words_of(name), bound, significant(value), significant(low), end,
+        yield Row(words_of(name), bound, _number(known[name]), _number(low), end,
                   unit_of(name).symbol, why)  # fmt: skip
 
 
 def _assumed(joint: JointFile | None) -> Iterator[Row]:
     for path, one in joint.assumed.items() if joint else ():
         name = path.split(".")[1]
-        usual, low, high = (significant(value) for value in (one.value, one.low, one.high))
+        usual, low, high = (_number(value) for value in (one.value, one.low, one.high))
         yield Row(words_of(name), "", usual, low, high, unit_of(name).symbol, one.why)
+
+
+def _number(value: float) -> str:
+    return f"{value:.5g}"
 
 
 def _figure(log: Log, report: BreakawayReport | None) -> Markup | None:
