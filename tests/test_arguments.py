@@ -239,6 +239,7 @@ def calls(w):
         "JointFile.from_fit": (bk.JointFile.from_fit, {"fit": w.fit, "log": w.log}),
         "JointFile.from_identification": (bk.JointFile.from_identification, {"found": w.found}),
         "JointFile.load": (bk.JointFile.load, {"path": w.folder / "joint.toml"}),
+        "JointFile.origin": (w.joint.origin, {"field": "joint.coulomb_n"}),
         "JointFile.save": (w.joint.save, {"path": w.folder / "joint.toml"}),
         "Log": (bk.Log, {"t_s": t_s, "position_m": t_s}),
         "Log.between": (w.log.between, {"start_s": 0.1, "end_s": 0.9}),
@@ -317,6 +318,7 @@ def calls(w):
             bk.impose_motion,
             {"joint": imposed, "velocity_m_per_s": t_s, "period_s": 1e-3},
         ),
+        "joint_from_pull": (bk.joint_from_pull, {"log": w.starts[0]}),
         "lay_over": (
             bk.lay_over,
             {"scenario": w.scenario, "joint": w.folder / "joint.toml"},
@@ -333,6 +335,7 @@ def calls(w):
         "load_stack": (bk.load_stack, {"source": "pi_p888_91_pd200"}),
         "load_study": (bk.load_study, {"path": "no.toml"}),
         "load_tuning": (bk.load_tuning, {"path": "no.toml"}),
+        "parts_of_pulls": (bk.parts_of_pulls, {"found": w.parts}),
         "margins": (bk.design.margins, {"loop": loop}),
         "measured_cycles": (
             bk.design.measured_cycles,
@@ -370,6 +373,10 @@ def calls(w):
                 "settings": w.scenario.controller,
                 "timing": w.scenario.timing,
             },
+        ),
+        "save_population": (
+            bk.save_population,
+            {"population": w.population, "path": w.folder / "parts.toml"},
         ),
         "save_scenario": (
             bk.save_scenario,
@@ -504,10 +511,12 @@ TEXTS = (
     "path",
     "sha256",
     "Channel.name",
+    "JointFile.origin.field",
+    "parts_of_pulls.name",
     "Channel.from_name",
     "Channel.unit",
 )
-LISTS = ("baselines", "columns", "made_of", "free", "repeats", "spans")
+LISTS = ("baselines", "columns", "free", "joints", "made_of", "repeats", "spans")
 MAPPINGS = ("changes", "channels", "fixed", "guesses", "levels", "mapping", "numbers", "vary")
 
 ACCEPTED = {

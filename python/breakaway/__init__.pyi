@@ -62,6 +62,8 @@ from breakaway.measure.identification import fit_population as fit_population
 from breakaway.measure.identification import identifiability as identifiability
 from breakaway.measure.identification import identify as identify
 from breakaway.measure.identification import identify_inertia_friction as identify_inertia_friction
+from breakaway.measure.identification import joint_from_pull as joint_from_pull
+from breakaway.measure.identification import parts_of_pulls as parts_of_pulls
 from breakaway.measure.identification import rig_from_blank as rig_from_blank
 from breakaway.measure.logs import Channel as Channel
 from breakaway.measure.logs import Finding as Finding
@@ -146,6 +148,7 @@ from breakaway.model.scenario import load_rig as load_rig
 from breakaway.model.scenario import load_scenario as load_scenario
 from breakaway.model.scenario import load_stack as load_stack
 from breakaway.model.scenario import preset_names as preset_names
+from breakaway.model.scenario import save_population as save_population
 from breakaway.model.scenario import save_scenario as save_scenario
 from breakaway.model.scenario import scenario_schema as scenario_schema
 from breakaway.run.accuracy import Accuracy as Accuracy

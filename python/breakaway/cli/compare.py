@@ -17,7 +17,7 @@ from breakaway.cli.completion import (
     method_preset,
     population_preset,
 )
-from breakaway.cli.options import Json, Threads
+from breakaway.cli.options import JointOfParts, Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.sheet import Sheet
 from breakaway.cli.show import busy, say, say_aside, say_json, say_written
@@ -40,6 +40,7 @@ def compare(
             help="Name of a preset, or path of a TOML file.", autocompletion=population_preset
         ),
     ] = "seized_parts",
+    joint: JointOfParts = None,
     out: Annotated[
         Path, typer.Option(help="Folder for the results: table, figures, page.", metavar="DIR")
     ] = Path("comparison"),
@@ -112,6 +113,7 @@ def compare(
             done = compare_methods(
                 population,
                 method,
+                joint=joint,
                 laws=_named(laws),
                 variations=_named(variations),
                 runs=runs,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from breakaway.cli.options import Json, ScenarioName
+from breakaway.cli.options import Joint, Json, ScenarioName
 from breakaway.cli.quantity import show, show_digits
 from breakaway.cli.sheet import Sheet
 from breakaway.cli.show import busy, plain, say, say_json, say_written
@@ -87,6 +87,7 @@ def design(
         Path | None,
         typer.Option(help="Folder for design.json and the figures.", metavar="DIR"),
     ] = None,
+    joint: Joint = None,
     require_stable: Annotated[
         bool,
         typer.Option(
@@ -109,9 +110,10 @@ def design(
     With --out, the folder gets design.json and, for each gain set, a Bode
     plot, a Nyquist plot, a root locus and the limit cycle, as PNG and SVG.
     """
+    from breakaway.cli.overlay import laid
     from breakaway.model.scenario import load_scenario
 
-    asked = load_scenario(scenario)
+    asked, overlay = laid(load_scenario(scenario), joint)
     if out is not None:  # before the work, not after it
         from breakaway.base.output import claim
         from breakaway.base.ownership import DESIGN
@@ -121,10 +123,14 @@ def design(
         judged = [_judge(asked, one) for one in _gain_sets(asked)]
     stable = bool(judged) and all(one.stable for one in judged)
     content = _document(asked, judged, stable)
+    if overlay:
+        content["joint"] = overlay.to_dict()
     files = _write(asked, judged, content, out) if out is not None else []
     if json:
         say_json(content | {"files": [str(path) for path in files]})
     else:
+        if overlay:
+            say(*overlay.tables())
         _show_all(asked, judged)
         say_written(files)
     if require_stable and not stable:

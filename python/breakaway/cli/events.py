@@ -11,12 +11,21 @@ import typer
 from breakaway.base.one_line import counted
 from breakaway.cli.measured import measured, rig_of
 from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Rig, Use
+from breakaway.cli.pulled import (
+    check_pulled_target,
+    joint_tables,
+    parts_table,
+    write_joint,
+    write_parts,
+)
 from breakaway.cli.quantity import show
 from breakaway.cli.sheet import Sheet
-from breakaway.cli.show import busy, say, say_json
+from breakaway.cli.show import busy, say, say_json, say_written
+from breakaway.errors import LogError
 
 if TYPE_CHECKING:
     from breakaway.measure.identification import BreakawayReport, Population
+    from breakaway.measure.logs import Log
 
 
 def events(
@@ -42,6 +51,17 @@ def events(
             help="Fit how breakaway differs from log to log; each log is one part.",
         ),
     ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="File for what was found: the joint of one log, or the population of several, "
+            "each log a part.",
+            metavar="FILE",
+        ),
+    ] = None,
+    mass_kg: Annotated[
+        float | None, typer.Option(help="Mass of the part in kg, from a scale, for --out.")
+    ] = None,
     json: Json = False,
 ) -> None:
     """Find breakaway in logs: force, presliding, loading rate, and which are lower bounds.
@@ -49,24 +69,56 @@ def events(
     A log in which the part already moves at the start is refused, with the
     reason. The force is used as measured: of inertia, only that of a rig file is
     subtracted.
+
+    With --out, one log becomes a joint file, for --joint of other commands.
+    Several become a population, for `breakaway compare` and `tune`. What logs do
+    not tell has a usual value and a wide range there, marked as assumed.
     """
     from breakaway.measure.identification import find_breakaway_events, fit_population
 
-    reports, hints, stands = [], [], rig_of(rig)
+    if out is not None:
+        check_pulled_target(logs, out)
+    elif mass_kg is not None:
+        raise LogError("--mass-kg: is for --out; give --out, or leave it out")
+    fits = population or (out is not None and len(logs) > 1)
+    read, reports, hints, stands = [], [], [], rig_of(rig)
     with busy("looking for breakaway ..."):
         for path in logs:
             log = measured(
                 path, mapping=mapping, memory_gib=memory_gib, resample_hz=resample_hz, use=use
             )
             reports.append(find_breakaway_events(log, passed_share=passed_share, rig=stands))
+            read += [] if out is None else [log]
             if not use and "friction_n" in log.channels:
                 hints.append(
                     f"- {log.name}: this uses force_n; --use force_n=friction_n takes friction"
                 )
-        found = fit_population(reports, passed_share=passed_share) if population else None
+        found = fit_population(reports, passed_share=passed_share) if fits else None
+    if not json:
+        _say(reports, hints, found)
+    told = [] if out is None else _write(out, read, reports, found, mass_kg)
     if json:
-        say_json({"logs": [_plain(report) for report in reports], **_fits(found)})
-        return
+        file = {} if out is None else {"file": str(out)}
+        say_json({"logs": [_plain(report) for report in reports], **_fits(found), **file})
+    elif out is not None:
+        say(*told)
+        say_written([out])
+
+
+def _write(
+    out: Path,
+    logs: list[Log],
+    reports: list[BreakawayReport],
+    found: Population | None,
+    mass_kg: float | None,
+) -> list[Sheet | str]:
+    """Write the joint of one log, or the population of several, and tell what it says."""
+    if found is None or len(logs) == 1:
+        return joint_tables(write_joint(logs[0], reports[0], out, mass_kg))
+    return [parts_table(write_parts(logs, reports, found, out, mass_kg))]
+
+
+def _say(reports: list[BreakawayReport], hints: list[str], found: Population | None) -> None:
     say(_table(reports))
     for report in reports:
         for reason in report.refused:

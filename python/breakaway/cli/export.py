@@ -5,13 +5,16 @@ from __future__ import annotations
 import shlex
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from breakaway.cli.help import add_command, unwrapped
-from breakaway.cli.options import Json, ScenarioName
+from breakaway.cli.options import Joint, Json, ScenarioName
 from breakaway.cli.show import busy, say, say_json, say_written
+
+if TYPE_CHECKING:
+    from breakaway.cli.overlay import Overlay
 
 EXPORT = "Write a scenario's controller or plant as code that runs elsewhere."
 
@@ -60,6 +63,7 @@ def export_c(
         What, typer.Option(help="Controller with its reference, plant, or the closed loop of both.")
     ] = What.CONTROLLER,
     real: Annotated[Real, typer.Option(help="The real type of the code.")] = Real.DOUBLE,
+    joint: Joint = None,
     json: Json = False,
 ) -> None:
     """Write self-contained C99: header, source, test program, CMakeLists.txt, README.
@@ -68,16 +72,18 @@ def export_c(
     and does not allocate memory. The scenario's numbers are parameters that
     you can change at run time; its kinds and options are fixed.
     """
+    from breakaway.cli.overlay import laid
     from breakaway.export import export_c as write
     from breakaway.model.scenario import load_scenario
 
-    asked = load_scenario(scenario)
+    asked, overlay = laid(load_scenario(scenario), joint)
     with busy("recording the step ..."):
         written = write(asked, what=what.value, out=out, real=real.value)
     if json:
         files = [str(path) for path in written.files]
-        say_json({"what": written.what, "real": written.real, "files": files})
+        say_json({"what": written.what, "real": written.real, "files": files, **_joint(overlay)})
         return
+    say(*(overlay.tables() if overlay else []))
     say_written(written.files)
     source, build = shlex.quote(str(out)), shlex.quote(str(out / "build"))
     say(
@@ -93,6 +99,7 @@ def export_fmu(
         What, typer.Option(help="Controller with its reference, plant, or the closed loop of both.")
     ] = What.CONTROLLER,
     fmi: Annotated[Fmi, typer.Option(help="Version of the FMI standard.")] = Fmi.THREE,
+    joint: Joint = None,
     json: Json = False,
 ) -> None:
     """Write a co-simulation FMU: sources, and the library for this host.
@@ -102,17 +109,23 @@ def export_fmu(
     or clang on PATH, or the one that CC names. Without one, the FMU holds only
     sources.
     """
+    from breakaway.cli.overlay import laid
     from breakaway.export import export_fmu as write
     from breakaway.model.scenario import load_scenario
 
-    asked = load_scenario(scenario)
+    asked, overlay = laid(load_scenario(scenario), joint)
     with busy("recording the step ..."):
         written = write(asked, what=what.value, fmi=fmi.value, out=out)
     if json:
         told = {"what": written.what, "fmi": written.fmi, "file": str(written.path)}
-        say_json({**told, "binary": written.binary, "note": written.note})
+        say_json({**told, "binary": written.binary, "note": written.note, **_joint(overlay)})
         return
+    say(*(overlay.tables() if overlay else []))
     say(f"wrote {written.path}: FMI {written.fmi}, {written.binary or written.note}")
+
+
+def _joint(overlay: Overlay | None) -> dict[str, object]:
+    return {"joint": overlay.to_dict()} if overlay else {}
 
 
 add_command(

@@ -9,17 +9,24 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from breakaway.base.reading import is_file, is_folder, is_there
+from breakaway.base.reading import is_file
 from breakaway.cli import identify_options as options
 from breakaway.cli.identified import law_tables, regression_tables
 from breakaway.cli.identify_options import LawChoice, LossChoice, MotionChoice
+from breakaway.cli.identify_pull import page_anyway, pull_in, tell_pull
 from breakaway.cli.measured import measured, pair, rig_of
 from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Rig, Use
 from breakaway.cli.progress import counted
-from breakaway.cli.show import busy, say, say_json, say_written
+from breakaway.cli.show import busy, say, say_aside, say_json, say_written
+from breakaway.cli.targets import check_target
 
 if TYPE_CHECKING:
-    from breakaway.measure.identification import Identification, JointFile
+    from breakaway.measure.identification import (
+        BreakawayReport,
+        Identification,
+        JointFile,
+        Posterior,
+    )
     from breakaway.measure.identification.comparison import ComparedLaw
     from breakaway.measure.logs import Log
 
@@ -55,11 +62,15 @@ def identify(
 
     Without --law: mass, Coulomb and viscous friction by regression, once with
     equal friction in both directions and once with separate levels for each.
+    A log of one pull from rest to slip tells neither: it gives the joint that
+    `breakaway events --out` gives.
     With --law: that law is fitted by simulation, with intervals, and with what
     the log cannot tell. Ctrl-C ends a fit and shows the best so far.
     """
     if out is not None:
-        _check_target(log, out)
+        from breakaway.measure.identification import JointFile
+
+        check_target([log], out, JointFile.load, "joint file")
     page = _page(log, out) if report else None
     only_laws = {
         "--fix": fix,
@@ -71,7 +82,6 @@ def identify(
         "--asymmetric": asymmetric,
         "--position-dependent": position_dependent,
         "--motion": motion is not MotionChoice.IMPOSED,
-        "--rig": rig,
     }
     _refuse_unused(law, only_laws, decimation)
     read = measured(
@@ -82,8 +92,15 @@ def identify(
         resample_hz=resample_hz,
         use=use,
     )
+    stands = rig_of(rig)
+    pull = pull_in(read, stands)
+    if law is None and pull is not None:
+        tell_pull(read, pull, log, out, page, json)
+        return
     if law is None:
-        _regress(read, log, lowpass_hz, decimation, out, page, json)
+        _refuse_unused(law, {"--rig": rig}, decimation)
+        with page_anyway(page, read, pull):
+            _regress(read, log, lowpass_hz, decimation, out, page, json)
         return
     settings: dict[str, Any] = {
         "motion": motion.value,
@@ -94,13 +111,14 @@ def identify(
         "fixed": _fixed(fix or []),
         "free": tuple(free or ()),
         "lowpass_hz": lowpass_hz,
-        "rig": rig_of(rig),
+        "rig": stands,
         "loss": loss.value,
         "starts": starts,
         "seed": seed,
     }
     span = None if held_out is None else _span(held_out, "--held-out")
-    _fit(read, law, settings, span, posterior, out, page, json)
+    with page_anyway(page, read, pull):
+        _fit(read, law, settings, span, posterior, out, page, pull, json)
 
 
 def _regress(
@@ -121,11 +139,11 @@ def _regress(
         fit = identify_inertia_friction(measured, **given)
     if not json:
         say(*regression_tables(fit, measured, path))
-    if out is not None:
-        JointFile.from_fit(fit, measured).save(out)
     if page is not None:
         found = fit_law(measured, law="coulomb", method="least_squares", lowpass_hz=lowpass_hz)
         _write_report(page, found)
+    if out is not None:
+        JointFile.from_fit(fit, measured).save(out)
     if json:
         say_json({"log": str(path), **asdict(fit), "file": str(out) if out else None})
     if not json:
@@ -140,10 +158,11 @@ def _fit(
     samples: int,
     out: Path | None,
     page: Path | None,
+    pull: BreakawayReport | None,
     json: bool,
 ) -> None:
     from breakaway.errors import LogError
-    from breakaway.measure.identification import JointFile, compare_laws
+    from breakaway.measure.identification import compare_laws
     from breakaway.measure.identification import identify as fit_law
     from breakaway.measure.identification.result import as_dict
 
@@ -167,12 +186,12 @@ def _fit(
             draws = found.posterior(samples, seed=settings["seed"], progress=progress)
     if not json:
         say(*law_tables(found, compared, predicted))
-    joint: JointFile | None = None
-    if out is not None:
-        joint = JointFile.from_identification(found, draws, seed=settings["seed"])
-        joint.save(out)
     if page is not None:
-        _write_report(page, found, posterior=draws, compared=compared, held_out=predicted)
+        _write_report(
+            page, found, posterior=draws, compared=compared, held_out=predicted, events=pull
+        )
+    if out is not None:
+        _joint(found, draws, settings["seed"], measured, pull).save(out)
     if json:
         shown = as_dict(found) | {
             "held_out_rms_error": None if predicted is None else predicted.rms_error,
@@ -185,6 +204,26 @@ def _fit(
         say_json(shown)
     if not json:
         say_written([path for path in (out, page) if path is not None])
+
+
+def _joint(
+    found: Identification,
+    draws: Posterior | None,
+    seed: int,
+    log: Log,
+    pull: BreakawayReport | None,
+) -> JointFile:
+    """Give the joint of a fit; where it tells none, that of the pull if the log is one."""
+    from breakaway.errors import LogError
+    from breakaway.measure.identification import JointFile, joint_from_pull
+
+    try:
+        return JointFile.from_identification(found, draws, seed=seed)
+    except LogError as error:
+        if pull is None:
+            raise
+        say_aside(f"{error}; the joint is that of the pull, as by `breakaway events --out`")
+        return joint_from_pull(log, report=pull, seed=seed)
 
 
 def _write_report(path: Path, found: Identification, **parts: Any) -> None:  # noqa: ANN401
@@ -268,20 +307,3 @@ def _number(text: str, option: str) -> float:
     if not math.isfinite(value):
         raise LogError(f"{option}: {text!r} is not a finite number")
     return value
-
-
-def _check_target(log: Path, out: Path) -> None:
-    """Refuse to write over the log, or over anything but another joint file."""
-    from breakaway.base.output import refuse_to_overwrite
-    from breakaway.errors import OutputError, ScenarioError
-    from breakaway.measure.identification import JointFile
-
-    refuse_to_overwrite(log, out)
-    if not is_folder(out.parent):
-        reason = "Not a directory" if is_there(out.parent) else "its folder is missing"
-        raise OutputError(f"{out}: cannot be written: {reason}")
-    if is_file(out):
-        try:
-            JointFile.load(out)
-        except ScenarioError:
-            raise OutputError(f"{out}: exists and is not a joint file; give another name") from None

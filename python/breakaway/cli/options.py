@@ -46,6 +46,21 @@ Rig = Annotated[
         metavar="FILE",
     ),
 ]
+Joint = Annotated[
+    Path | None,
+    typer.Option(
+        help="Joint file from `breakaway identify` or `events`, laid over the scenario.",
+        metavar="FILE",
+    ),
+]
+JointOfParts = Annotated[
+    Path | None,
+    typer.Option(
+        help="Joint file from `breakaway identify` or `events`: the parts are the joints that it "
+        "draws.",
+        metavar="FILE",
+    ),
+]
 Use = Annotated[
     list[str] | None,
     typer.Option(

@@ -75,7 +75,7 @@ class Overlay:
             prose=["why"],
         )
         for field, value in self.from_log().items():
-            shown.add(field, show(field, value), log, "identified")
+            shown.add(field, show(field, value), log, self.joint_file.origin(field))
         shown.add("joint.law", self.scenario.joint.law, *self.law())
         left_n, because = self.residual()
         if because and left_n is not None:
@@ -93,6 +93,7 @@ class Overlay:
             "file": str(self.path),
             "log": self.joint_file.provenance.log,
             "from_log": self.from_log(),
+            "origin": {field: self.joint_file.origin(field) for field in self.from_log()},
             "law": {"value": self.scenario.joint.law, "reason": self.law()[1]},
             "residual_n": {"value": self.residual()[0], "reason": self.residual()[1]},
             "from_scenario": {
@@ -123,6 +124,21 @@ def overlay_of(path: Path, scenario: Scenario) -> Overlay:
     except ScenarioError as error:
         raise ScenarioError(f"{path} laid over {scenario.name}: {error}") from None
     return Overlay(path, joint_file, scenario, changed)
+
+
+def laid(scenario: Scenario, path: Path | None) -> tuple[Scenario, Overlay | None]:
+    """Lay a joint file over a scenario where one is given.
+
+    Raises
+    ------
+    ScenarioError
+        As `overlay_of`.
+
+    """
+    if path is None:
+        return scenario, None
+    overlay = overlay_of(path, scenario)
+    return overlay.scenario, overlay
 
 
 def _value(scenario: Scenario, field: str) -> float | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from breakaway.cli.accuracy import accuracy_of, accuracy_sheet
-from breakaway.cli.options import Json, ScenarioName
+from breakaway.cli.options import Joint, Json, ScenarioName
 from breakaway.cli.quantity import show, show_value, split_unit
 from breakaway.cli.sheet import Sheet
 from breakaway.cli.show import busy, say, say_json, say_written
@@ -43,12 +43,7 @@ def run(
             help="Folder for the results: scenario, metrics, trace, figure.", metavar="DIR"
         ),
     ] = None,
-    joint: Annotated[
-        Path | None,
-        typer.Option(
-            help="Joint file from `breakaway identify`, laid over the scenario.", metavar="FILE"
-        ),
-    ] = None,
+    joint: Joint = None,
     seed: Annotated[
         int | None, typer.Option(help="Seed of all random draws. Left out: the scenario's.")
     ] = None,
@@ -76,12 +71,9 @@ def run(
         refuse_to_overwrite(Path(scenario), out / "scenario.toml")
     if seed is not None:
         asked = asked.with_(seed=seed)
-    overlay = None
-    if joint is not None:
-        from breakaway.cli.overlay import overlay_of
+    from breakaway.cli.overlay import laid
 
-        overlay = overlay_of(joint, asked)
-        asked = overlay.scenario
+    asked, overlay = laid(asked, joint)
     finished, files = _simulate(asked, out)
     accuracy = accuracy_of(finished.scenario) if check_accuracy else None
     if json:

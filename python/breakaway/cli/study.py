@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
-from breakaway.cli.options import Json, Threads
+from breakaway.cli.options import JointOfParts, Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
 from breakaway.cli.sheet import Sheet
@@ -30,6 +30,7 @@ def study(
     out: Annotated[
         Path, typer.Option(help="Folder for the results: summary, tables, figures.", metavar="DIR")
     ],
+    joint: JointOfParts = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue the study in DIR.")] = False,
     threads: Threads = None,
     json: Json = False,
@@ -48,7 +49,7 @@ def study(
     from breakaway.ask.durable.journal import PIECES
     from breakaway.ask.studies import load_study, run_study
 
-    asked = load_study(file)
+    asked = load_study(file, joint=joint)
     if is_there(out) and not resume:  # what goes on may be asked by its own study.toml
         from breakaway.base.output import refuse_to_overwrite
 
@@ -61,7 +62,8 @@ def study(
     except (KeyboardInterrupt, OutputError):
         if is_there(out / "manifest.json"):
             say_aside(
-                f"what is finished is kept; go on with: breakaway study {file} --out {out} --resume"
+                f"what is finished is kept; go on with: breakaway study {file} --out {out} "
+                f"{'' if joint is None else f'--joint {joint} '}--resume"
             )
         raise
     files = sorted(path for path in out.iterdir() if path.is_file() and path.name[0] != ".")

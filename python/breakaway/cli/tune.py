@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from breakaway.base.reading import is_there
-from breakaway.cli.options import Json, Threads
+from breakaway.cli.options import JointOfParts, Json, Threads
 from breakaway.cli.progress import shown_progress
 from breakaway.cli.quantity import show, split_unit
 from breakaway.cli.sheet import Sheet
@@ -27,6 +27,7 @@ def tune(
     out: Annotated[
         Path, typer.Option(help="Folder for the results: methods, tables, figures.", metavar="DIR")
     ],
+    joint: JointOfParts = None,
     evaluations: Annotated[
         int | None, typer.Option(min=1, help="How many methods to try. Left out: as in the file.")
     ] = None,
@@ -45,7 +46,7 @@ def tune(
     from breakaway.ask.tuning import tune as run_tuning
     from breakaway.base.output import refuse_to_overwrite
 
-    asked = load_tuning(file)
+    asked = load_tuning(file, joint=joint)
     refuse_to_overwrite(file, out / "best.toml")
     try:
         with shown_progress(asked.name) as progress:
@@ -60,7 +61,8 @@ def tune(
             )
     except (KeyboardInterrupt, OutputError):
         if is_there(out / "manifest.json"):
-            more = "" if evaluations is None else f" --evaluations {evaluations}"
+            more = "" if joint is None else f" --joint {joint}"
+            more += "" if evaluations is None else f" --evaluations {evaluations}"
             say_aside(
                 f"what is finished is kept; go on with: breakaway tune {file} --out {out}{more} "
                 "--resume"

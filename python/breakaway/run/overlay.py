@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import overload
 
 from breakaway.base.arguments import check_arguments
 from breakaway.design.pole_placement import residual_n
@@ -11,11 +12,25 @@ from breakaway.measure.identification.joint_file import NO_PLACE, JointFile
 from breakaway.measure.identification.result import Identification
 from breakaway.model.scenario.joint_source import JointSource
 from breakaway.model.scenario.laws import laws_with, values_under
+from breakaway.model.scenario.population import PartPopulation
 from breakaway.model.scenario.scenario import Scenario
+from breakaway.run.parts_overlay import lay_over_parts
+
+Joints = JointFile | Identification | str | Path
+"""What a joint is given as."""
 
 
-def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path) -> Scenario:
+@overload
+def lay_over(scenario: Scenario, joint: Joints) -> Scenario: ...
+@overload
+def lay_over(scenario: PartPopulation, joint: Joints) -> PartPopulation: ...
+def lay_over(
+    scenario: Scenario | PartPopulation, joint: JointFile | Identification | str | Path
+) -> Scenario | PartPopulation:
     """Lay an identified joint over a scenario, and the mass if the log determined it.
+
+    Over a population: its parts become the joints that the file draws, each row of the draws one
+    part; what the file has no draws of stays. What the file assumes varies there as well.
 
     The friction law of the fit comes along, and how friction differs with the direction. What the
     log did not determine stays as in the scenario. Friction that is left at the end of the guide,
@@ -27,21 +42,22 @@ def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path)
 
     Parameters
     ----------
-    scenario : Scenario
+    scenario : Scenario or PartPopulation
         What is changed; it stays as it is.
     joint : JointFile, Identification, str or Path
         The joint, or the path of its file.
 
     Returns
     -------
-    Scenario
+    Scenario or PartPopulation
         The changed copy. Not checked: whether gains can be designed for it, which `resolve` finds.
 
     Raises
     ------
     ScenarioError
         The file is missing or not valid, the scenario's friction law has no place for a number of
-        the joint, or the changed scenario is not valid: the joint and the field are named.
+        the joint, or the changed scenario is not valid: the joint and the field are named. Or the
+        file has no draws for a population.
     LogError
         The identification did not determine Coulomb friction, so there is no joint.
 
@@ -64,10 +80,14 @@ def lay_over(scenario: Scenario, joint: JointFile | Identification | str | Path)
     """
     check_arguments(lay_over, locals(), ScenarioError)
     if isinstance(joint, str | Path):
-        return lay_file_over(scenario, JointFile.load(joint), str(joint))
-    if isinstance(joint, Identification):
-        return lay_file_over(scenario, JointFile.from_identification(joint), "identification")
-    return lay_file_over(scenario, joint, "joint file")
+        file, name = JointFile.load(joint), str(joint)
+    elif isinstance(joint, Identification):
+        file, name = JointFile.from_identification(joint), "identification"
+    else:
+        file, name = joint, "joint file"
+    if isinstance(scenario, PartPopulation):
+        return lay_over_parts(scenario, file, name)
+    return lay_file_over(scenario, file, name)
 
 
 def lay_file_over(scenario: Scenario, joint: JointFile, name: str) -> Scenario:
@@ -96,6 +116,7 @@ def lay_file_over(scenario: Scenario, joint: JointFile, name: str) -> Scenario:
         dropped="; ".join(
             f"{one} = {value:.5g} ({NO_PLACE[one]})" for one, value in joint.unplaced.items()
         ),
+        at_least="; ".join(f"{field} ({why})" for field, why in joint.at_least.items()),
     )
     try:
         return scenario.with_(

@@ -71,6 +71,8 @@ def _lost_of_the_log(scenario: Scenario) -> Iterator[str]:
     source = scenario.joint_source
     if source is not None and source.dropped:
         yield f"joint_source: of the joint of {source.log} the run leaves out {source.dropped}"
+    if source is not None and source.at_least:
+        yield f"joint_source: {source.log} bounds from below, and the run takes: {source.at_least}"
 
 
 def _levels_do_not_fit(joint: AnyJoint) -> Iterator[str]:

@@ -16,6 +16,7 @@ from breakaway.base.arguments import run_numbers
 from breakaway.base.reading import read_toml
 from breakaway.base.text import shown
 from breakaway.errors import StudyError
+from breakaway.measure.identification.joint_file import JointFile
 from breakaway.model.scenario.files import load_method, load_population, preset_names
 from breakaway.model.scenario.laws import LAWS, Law
 from breakaway.model.scenario.method import Method
@@ -23,6 +24,7 @@ from breakaway.model.scenario.model import Name
 from breakaway.model.scenario.population import PartPopulation
 from breakaway.model.scenario.variation import VARIATIONS, VariationKind
 from breakaway.run.batch.simulation import RUNS_MAX
+from breakaway.run.overlay import lay_over
 from breakaway.run.trials import Case
 
 AnyName = TypeVar("AnyName", bound=str | Path | Method)
@@ -110,6 +112,7 @@ def ask(
     population: str | Path | PartPopulation,
     methods: Sequence[str | Path | Method] | str | None = None,
     *,
+    joint: str | Path | JointFile | None = None,
     laws: Sequence[str] | str | None = None,
     variations: Sequence[str] | str | None = None,
     runs: int | range | None = None,
@@ -147,6 +150,8 @@ def ask(
         values["population"] = population
     else:
         values["population"] = load_population(population)
+    if joint is not None:
+        values["population"] = lay_over(values["population"], joint)
     if whole is None or methods is not None:
         chosen = preset_names("methods") if methods is None else _listed(methods) or []
         values["methods"] = [m if isinstance(m, Method) else load_method(m) for m in chosen]

@@ -30,6 +30,7 @@ from breakaway.base.equality import ByValue
 from breakaway.base.one_line import OneLine, counted
 from breakaway.base.threads import thread_count
 from breakaway.errors import StudyError
+from breakaway.measure.identification.joint_file import JointFile
 from breakaway.model.scenario.method import Method
 from breakaway.model.scenario.population import PartPopulation
 from breakaway.run.trials import Case, Trial, run_trial
@@ -121,6 +122,7 @@ def compare_methods(
     population: str | Path | PartPopulation,
     methods: Sequence[str | Path | Method] | str | None = None,
     *,
+    joint: str | Path | JointFile | None = None,
     laws: Sequence[str] | str | None = None,
     variations: Sequence[str] | str | None = None,
     runs: int | range | None = None,
@@ -148,6 +150,9 @@ def compare_methods(
         ``comparison.toml`` of a folder holds a whole comparison; other arguments then override it.
     methods : sequence, optional
         Names of presets, TOML files, or methods. Left out: every preset.
+    joint : str, Path or JointFile, optional
+        A joint, or the path of its file, laid over the population by `lay_over`: the parts are the
+        joints that it draws.
     laws : sequence of str, optional
         Friction laws of the joints; single parts are shown under the first. Left out: ``lugre``,
         ``elasto_plastic`` and ``gms``.
@@ -207,6 +212,7 @@ def compare_methods(
     asked = ask(
         population,
         methods,
+        joint=joint,
         laws=laws,
         variations=variations,
         runs=runs,

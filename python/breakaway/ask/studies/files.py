@@ -17,7 +17,7 @@ from breakaway.model.scenario.files import preset_names
 Built = TypeVar("Built")
 
 
-def load_study(path: str | Path) -> Study:
+def load_study(path: str | Path, *, joint: str | Path | None = None) -> Study:
     """Load a study from a TOML file.
 
     Scenarios are named as in ``load_scenario``; paths of files start at the study's folder.
@@ -26,6 +26,8 @@ def load_study(path: str | Path) -> Study:
     ----------
     path : str or Path
         The file.
+    joint : str or Path, optional
+        Path of a joint file, for the study's ``joint``; it replaces the one that the file names.
 
     Returns
     -------
@@ -54,7 +56,9 @@ def load_study(path: str | Path) -> Study:
     1
 
     """
-    return load_table(path, "study", lambda values, at: parse_study(_from_folder(values, at)))
+    check_arguments(load_study, locals(), StudyError)
+    own = {} if joint is None else {"joint": str(joint)}
+    return load_table(path, "study", lambda values, at: parse_study(_from_folder(values, at) | own))
 
 
 def load_table(

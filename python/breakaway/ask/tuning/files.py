@@ -7,11 +7,15 @@ from typing import Any
 
 from breakaway.ask.studies.files import load_table
 from breakaway.ask.tuning.problem import Tuning
+from breakaway.base.arguments import check_arguments
 from breakaway.base.reading import is_there
-from breakaway.model.scenario.files import preset_names
+from breakaway.errors import StudyError
+from breakaway.model.scenario.files import load_population, preset_names
+from breakaway.model.scenario.population import PartPopulation
+from breakaway.run.overlay import lay_over
 
 
-def load_tuning(path: str | Path) -> Tuning:
+def load_tuning(path: str | Path, *, joint: str | Path | None = None) -> Tuning:
     """Load a tuning from a TOML file.
 
     Population and method are presets, tables of the file, or paths of files, which start at the
@@ -21,6 +25,9 @@ def load_tuning(path: str | Path) -> Tuning:
     ----------
     path : str or Path
         The file.
+    joint : str or Path, optional
+        Path of a joint file, laid over the population by `lay_over`: the parts are the joints that
+        it draws.
 
     Returns
     -------
@@ -49,7 +56,19 @@ def load_tuning(path: str | Path) -> Tuning:
     100
 
     """
-    return load_table(path, "tuning", lambda values, at: Tuning.parse(_from_folder(values, at)))
+    check_arguments(load_tuning, locals(), StudyError)
+    return load_table(
+        path, "tuning", lambda values, at: Tuning.parse(_over(joint, _from_folder(values, at)))
+    )
+
+
+def _over(joint: str | Path | None, values: dict[str, Any]) -> dict[str, Any]:
+    """Lay a joint over the population, where both are given; what is no population stays."""
+    given = values.get("population")
+    if joint is None or not isinstance(given, str | dict):
+        return values
+    population = load_population(given) if isinstance(given, str) else PartPopulation.parse(given)
+    return values | {"population": lay_over(population, joint)}
 
 
 def _from_folder(values: dict[str, Any], folder: Path) -> dict[str, Any]:

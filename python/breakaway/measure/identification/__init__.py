@@ -12,6 +12,7 @@ from breakaway.measure.identification.events import (
     Spike,
     find_breakaway_events,
 )
+from breakaway.measure.identification.fitted_parts import parts_of_pulls
 from breakaway.measure.identification.identifiability import Identifiability, identifiability
 from breakaway.measure.identification.identify import identify
 from breakaway.measure.identification.inertia_friction import (
@@ -25,6 +26,7 @@ from breakaway.measure.identification.joint_file import JointFile
 from breakaway.measure.identification.laws import LAWS
 from breakaway.measure.identification.population import Population, fit_population
 from breakaway.measure.identification.prediction import Prediction
+from breakaway.measure.identification.pulled_joint import joint_from_pull
 from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.sliding import Reversal, SlidingLevel
@@ -65,5 +67,7 @@ __all__ = [
     "identifiability",
     "identify",
     "identify_inertia_friction",
+    "joint_from_pull",
+    "parts_of_pulls",
     "rig_from_blank",
 ]

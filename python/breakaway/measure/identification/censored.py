@@ -176,7 +176,8 @@ def fit_distribution(
     errors, ranges = chosen.errors(mu, s), chosen.intervals(mu, s, confidence)
     survival = kaplan_meier(array, bound)
     expected = np.where(bound, np.nan, chosen.value(mu + math.exp(s) * ndtri(_middle(survival))))
-    distance, seen = _distance(chosen, mu, s, survival), int(np.count_nonzero(~bound))
+    distance = _distance(chosen, mu, s, survival, array[~bound])
+    seen = int(np.count_nonzero(~bound))
     limit = LILLIEFORS / (math.sqrt(seen) - 0.01 + 0.85 / math.sqrt(seen))
     center = float(chosen.value(mu))
     return FittedDistribution(
@@ -351,11 +352,12 @@ def _middle(survival: Array) -> Array:
     return 1.0 - 0.5 * (before + survival)
 
 
-def _distance(chosen: _Likelihood, mu: float, s: float, survival: Array) -> float:
+def _distance(chosen: _Likelihood, mu: float, s: float, survival: Array, seen: Array) -> float:
     """Return the largest distance of the fitted distribution from the recorded one."""
     before = np.concatenate([[1.0], survival[:-1]])
     steps = before > survival
-    fitted = 1.0 - ndtr((np.unique(chosen.seen) - mu) * math.exp(-s))
+    first = np.unique(seen, return_index=True)[1]  # of values, whose logarithms may be equal
+    fitted = 1.0 - ndtr((chosen.seen[first] - mu) * math.exp(-s))
     return float(max(np.abs(fitted - survival[steps]).max(), np.abs(fitted - before[steps]).max()))
 
 

@@ -278,11 +278,7 @@ def find_breakaway_events(
         "offset_n": offset_n,
     }
     _check_settings(settings)
-    places = spikes(log, "force_n")
-    held = log.force_n.copy()
-    held[places] = held[places - 1]
-    quiet = Log(force_n=held, channels=log.channels, source=log.source, sha256=log.sha256)
-    at_part = quiet if rig is None else rig.at_part(quiet)
+    at_part, quiet, places = at_part_quiet(log, rig)
     cut = find_stretches(
         at_part,
         rest_speed_m_per_s=rest_speed_m_per_s,
@@ -320,6 +316,18 @@ def find_breakaway_events(
         rig=rig,
         settings=settings,
     )
+
+
+def at_part_quiet(log: Log, rig: RigFile | None) -> tuple[Log, Log, Places]:
+    """Return a log without single-sample spikes at the part, as it was measured, and their places.
+
+    The load before a spike is taken to last.
+    """
+    places = spikes(log, "force_n")
+    held = log.force_n.copy()
+    held[places] = held[places - 1]
+    quiet = Log(force_n=held, channels=log.channels, source=log.source, sha256=log.sha256)
+    return (quiet if rig is None else rig.at_part(quiet)), quiet, places
 
 
 @dataclass(frozen=True)

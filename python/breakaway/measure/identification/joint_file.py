@@ -8,12 +8,13 @@ from typing import Annotated, Any
 
 import numpy as np
 import tomli_w
-from pydantic import Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from breakaway._core import __version__
 from breakaway.base.arguments import check_arguments
 from breakaway.base.output import write_atomically
 from breakaway.base.reading import text_of
+from breakaway.base.text import shown
 from breakaway.errors import LogError, ScenarioError
 from breakaway.measure.identification.curve import peak_in_words
 from breakaway.measure.identification.inertia_friction import InertiaFrictionFit
@@ -21,7 +22,7 @@ from breakaway.measure.identification.result import Identification
 from breakaway.measure.identification.rig_file import RigFile
 from breakaway.measure.identification.uncertainty import Posterior
 from breakaway.measure.logs.log import Array, Log
-from breakaway.model.scenario.distribution import Samples
+from breakaway.model.scenario.distribution import LogUniform, Samples
 from breakaway.model.scenario.files import parse_toml
 from breakaway.model.scenario.laws import Law
 from breakaway.model.scenario.model import Model, Name, NotNegative, Positive, Text
@@ -39,6 +40,15 @@ NO_PLACE = {
 """What a log can tell of a joint and no scenario has a place for, with the reason."""
 
 METHOD = "IDIM least squares (Janot, Gautier, Brunot 2019)"
+
+
+def _number(end: object) -> object:
+    """Read an infinite end that JSON, which has no number for it, gives as a word."""
+    return float(str(end)) if end in ("inf", "-inf") else end
+
+
+End = Annotated[float, Field(allow_inf_nan=True), BeforeValidator(_number)]
+"""An end of an interval, which may be infinite."""
 
 
 class Settings(Model):
@@ -67,6 +77,64 @@ class FitSettings(Model):
     complete: bool
 
 
+class Search(Model):
+    """Settings of the search for breakaway, as `find_breakaway_events` names them."""
+
+    rest_speed_m_per_s: Positive | None = None
+    min_rest_s: NotNegative
+    min_slip_m: NotNegative | None = None
+    gap_s: Positive | None = None
+    sliding_window_s: Positive | None = None
+    passed_share: Annotated[float, Field(gt=0.0, le=1.0)]
+    offset_n: float | None = None
+    rig: RigFile | None = None
+
+
+class Assumed(Model):
+    """A usual value of what no log told, and a wide range about it.
+
+    Draws fill the range evenly: its logarithm where it does not start at 0.
+
+    Examples
+    --------
+    >>> one = Assumed(value=0.03, low=0.005, high=0.2, why="one speed")
+    >>> draws = one.draws(np.random.default_rng(0), 1000)
+    >>> bool((draws >= 0.005).all() and (draws <= 0.2).all())
+    True
+
+    """
+
+    value: NotNegative
+    low: NotNegative
+    high: Positive
+    why: Text
+
+    @model_validator(mode="after")
+    def _is_a_range(self) -> Assumed:
+        if not self.low <= self.value <= self.high:
+            raise ValueError(
+                f"value: {self.value!r} is not from low = {self.low!r} to high = {self.high!r}; "
+                "give low <= value <= high"
+            )
+        return self
+
+    def draws(self, rng: np.random.Generator, count: int) -> Array:
+        """Draw values of the range.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            What draws.
+        count : int
+            How many, >= 0.
+
+        """
+        shares = rng.random(count)
+        if self.low == 0.0:
+            return np.asarray(self.high * shares)
+        return LogUniform(low=self.low, high=self.high).quantile(shares)
+
+
 class Provenance(Model):
     """Where the figures come from. ``log_sha256`` is absent for a log that was in no file."""
 
@@ -76,6 +144,7 @@ class Provenance(Model):
     method: Text
     settings: Settings | None = None
     fit: FitSettings | None = None
+    search: Search | None = None
     samples: Annotated[int, Field(ge=1)]
     notes: Annotated[list[Text], Field(default_factory=list)]
 
@@ -114,13 +183,25 @@ class Rig(Model):
 class Draws(Model):
     """Joints that are as likely as any other, given the log: a row of all columns is one joint.
 
-    ``source`` says what they were drawn from: the posterior, or the normal distribution that the
-    standard errors and correlations give, of which values that no joint can have are drawn again.
+    ``source`` says what they were drawn from: the posterior, the normal distribution that the
+    standard errors and correlations give, of which values that no joint can have are drawn again,
+    or the intervals of what was seen and the ranges of what is assumed.
     """
 
     source: Text
     seed: int
     values: dict[str, list[float]]
+
+
+class PullFigures(Model):
+    """How the part was pulled: what follows from joint and rig together, and none of it alone."""
+
+    release_speed_m_per_s: Positive | None = None
+    """Largest speed, over two samples, from the peak until the load is that of sliding."""
+    sliding_speed_m_per_s: Positive | None = None
+    """Speed of the steady sliding that tells ``coulomb_n``."""
+    loading_rate_n_per_s: float | None = None
+    presliding_displacement_m: float | None = None
 
 
 class AsymmetricParameters(Model):
@@ -151,7 +232,10 @@ class JointFile(Model):
 
     Units are in the keys. ``not_identified`` maps a field of a scenario to the reason why the
     log does not tell it: such a field keeps the scenario's own value. ``unplaced`` holds what the
-    log tells of the joint and no scenario has a place for; `dropped` says why.
+    log tells of the joint and no scenario has a place for; `dropped` says why. ``at_least`` has the
+    fields that are bounds from below, with the reason: their intervals have no upper end.
+    ``assumed`` has what no log told but a study should vary, with a range that is stated, not
+    measured. ``pull`` is there where the joint is of one pull.
 
     Examples
     --------
@@ -173,13 +257,25 @@ class JointFile(Model):
     joint: Joint
     rig: Rig
     standard_error: dict[str, NotNegative]
-    interval: dict[str, list[Annotated[float, Field(allow_inf_nan=True)]]]
+    interval: dict[str, list[End]]
     """Name of a parameter -> its ends; the upper one is infinite for a bound from below."""
     asymmetric: Asymmetric | None = None
     relative_force_error_percent: RelativeForceError | None = None
+    at_least: dict[str, Text] = Field(default_factory=dict)
+    """Field of a scenario that is a bound from below -> why."""
+    assumed: dict[str, Assumed] = Field(default_factory=dict)
+    """Field of a scenario -> usual value and range, where the log does not tell it, or not all."""
     not_identified: dict[str, Text]
     unplaced: dict[str, float] = Field(default_factory=dict)
+    pull: PullFigures | None = None
     draws: Annotated[Draws | None, Field(repr=False)] = None
+
+    @model_validator(mode="after")
+    def _says_what_has_no_place(self) -> JointFile:
+        for name in self.unplaced:
+            if name not in NO_PLACE:
+                raise ValueError(f"unplaced: {shown(name)} is not one of {', '.join(NO_PLACE)}")
+        return self
 
     @classmethod
     def from_fit(cls, fit: InertiaFrictionFit, log: Log) -> JointFile:
@@ -310,6 +406,24 @@ class JointFile(Model):
             for name, value in model
             if value is not None and name != "law"
         }
+
+    def origin(self, field: str) -> str:
+        """Say how a field of `scenario_changes` is known: identified, a bound, assumed or given.
+
+        Parameters
+        ----------
+        field : str
+            Its dotted path, such as ``joint.stiction_n``.
+
+        """
+        check_arguments(JointFile.origin, locals(), ScenarioError)
+        if field in self.at_least:
+            return f"at least: {self.at_least[field]}"
+        if field in self.assumed:
+            return f"assumed: {self.assumed[field].why}"
+        if field == "part.mass_kg" and self.provenance.search is not None:
+            return "given"
+        return "identified"
 
     def dropped(self) -> dict[str, tuple[float, str]]:
         """Return what no scenario has a place for: each value, and why it has none."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +19,11 @@ from breakaway.measure.identification.censored import (
     Kind,
     fit_distribution,
 )
-from breakaway.measure.identification.events import BreakawayReport, find_breakaway_events
+from breakaway.measure.identification.events import (
+    BreakawayEvent,
+    BreakawayReport,
+    find_breakaway_events,
+)
 from breakaway.measure.logs.log import Array, Log
 from breakaway.model.scenario.distribution import LogNormal, Normal, Samples
 
@@ -140,7 +144,7 @@ class Population(OneLine):
 
 
 def fit_population(
-    logs: Iterable[Log | BreakawayReport],
+    logs: Iterable[float | Log | BreakawayReport | BreakawayEvent],
     *,
     distribution: Kind = "log_normal",
     parts: Sequence[str] | None = None,
@@ -149,16 +153,17 @@ def fit_population(
 ) -> Population:
     """Fit the distributions of breakaway over many parts, lower bounds counted as such.
 
-    Each log is a part, unless ``parts`` says which logs belong to one. Of a part with several
+    Each log is a part, unless ``parts`` says which logs belong to one. So is each breakaway force
+    that is known without a log, and each event. Of a part with several
     events the median counts; it is a lower bound where one of the events at or below the median
     is, because a larger value in its place may raise the median. `fit_distribution` says how lower
     bounds enter.
 
     Parameters
     ----------
-    logs : iterable of Log or BreakawayReport
+    logs : iterable of Log, BreakawayReport, BreakawayEvent or float
         Logs are searched with the defaults of `find_breakaway_events`; reports keep the settings
-        they were made with.
+        they were made with. A number is a known breakaway force in N, finite and > 0, and no bound.
     distribution : str
         ``log_normal`` or ``normal``.
     parts : sequence of str, optional
@@ -203,15 +208,13 @@ def fit_population(
 
     """
     check_arguments(fit_population, locals(), LogError)
-    reports = [
-        log if isinstance(log, BreakawayReport) else _searched(log, passed_share) for log in logs
-    ]
-    names = _part_names(reports, parts)
-    grouped: dict[str, list[int]] = {}
-    for place, name in enumerate(names):
-        if reports[place].events:
-            grouped.setdefault(name, []).append(place)
-    table, bounds = _table(reports, list(grouped.values()))
+    sources = [_source(place, log, passed_share) for place, log in enumerate(logs)]
+    names = _part_names(sources, parts)
+    grouped: dict[str, list[_Source]] = {}
+    for name, source in zip(names, sources, strict=True):
+        if source.starts:
+            grouped.setdefault(name, []).append(source)
+    table, bounds = _table(list(grouped.values()))
     fits, notes = {}, []
     for quantity in QUANTITIES:
         here = np.isfinite(table[quantity])
@@ -222,13 +225,13 @@ def fit_population(
             )  # fmt: skip
         except LogError as error:
             if quantity == "breakaway_force_n":
-                refusals = "".join(f"; {why}" for why in _refused(reports)[:3])
+                refusals = "".join(f"; {why}" for why in _refused(sources)[:3])
                 raise LogError(f"{quantity}: {error}{refusals}") from None
             notes.append(f"{quantity} is not fitted: {error}")
-    gain = 0.01 * max((r.rig.force_calibration_percent for r in reports if r.rig), default=0.0)
+    gain = 0.01 * max((one.gain_percent for one in sources), default=0.0)
     fits = {name: _with_gain(name, fit, gain) for name, fit in fits.items()}
     notes += [note for name, fit in fits.items() for note in _cautions(name, fit)]
-    events = [len([e for k in places for e in reports[k].events]) for places in grouped.values()]
+    events = [sum(len(one.starts) for one in part) for part in grouped.values()]
     return Population(
         fits=fits,
         parts=tuple(grouped),
@@ -236,7 +239,7 @@ def fit_population(
         bounds=bounds,
         events=sum(events),
         repeats=sum(count > 1 for count in events),
-        refused=tuple(_refused(reports)),
+        refused=tuple(_refused(sources)),
         correlation=_correlation(fits, table, distribution),
         notes=tuple(notes),
     )
@@ -264,29 +267,64 @@ def _with_gain(name: str, fit: FittedDistribution, gain: float) -> FittedDistrib
     return replace(fit, standard_error=errors, interval=ends)
 
 
-def _searched(log: Log, passed_share: float) -> BreakawayReport:
-    return find_breakaway_events(log, passed_share=passed_share)
+@dataclass(frozen=True)
+class _Source:
+    """What one log, report, event or number tells: its starts, by quantity."""
+
+    name: str
+    starts: tuple[Mapping[str, float | None], ...]
+    bounds: tuple[bool, ...]
+    refused: tuple[str, ...] = ()
+    gain_percent: float = 0.0
 
 
-def _part_names(reports: list[BreakawayReport], parts: Sequence[str] | None) -> list[str]:
+def _source(
+    place: int, given: float | Log | BreakawayReport | BreakawayEvent, passed_share: float
+) -> _Source:
+    if isinstance(given, Log):
+        given = find_breakaway_events(given, passed_share=passed_share)
+    if isinstance(given, BreakawayReport):
+        events, name = given.events, given.name
+        refused = given.refused or (() if events else ("has no start from rest",))
+        gain = given.rig.force_calibration_percent if given.rig else 0.0
+    elif isinstance(given, BreakawayEvent):
+        events, name, refused, gain = (given,), f"event at {given.time_s:.6g} s", (), 0.0
+    else:
+        return _known(place, float(given))
+    starts = tuple({name: getattr(event, name) for name in QUANTITIES} for event in events)
+    return _Source(name, starts, tuple(e.is_lower_bound for e in events), refused, gain)
+
+
+def _known(place: int, force_n: float) -> _Source:
+    if not (math.isfinite(force_n) and force_n > 0.0):
+        raise LogError(
+            f"logs[{place}]: {force_n:g} is no breakaway force; it must be finite and > 0 N"
+        )
+    return _Source(f"{force_n:g} N", ({"breakaway_force_n": force_n},), (False,))
+
+
+def _part_names(sources: list[_Source], parts: Sequence[str] | None) -> list[str]:
     if parts is None:
         # Logs may share a name, but are parts of their own.
-        return [f"{place + 1} {report.name}" for place, report in enumerate(reports)]
-    if len(parts) != len(reports):
-        raise LogError(f"{len(parts)} names of parts for {len(reports)} logs; give one for each")
+        return [f"{place + 1} {one.name}" for place, one in enumerate(sources)]
+    if len(parts) != len(sources):
+        raise LogError(f"{len(parts)} names of parts for {len(sources)} logs; give one for each")
     return list(parts)
 
 
 def _table(
-    reports: list[BreakawayReport], groups: list[list[int]]
+    groups: list[list[_Source]],
 ) -> tuple[dict[str, Array], dict[str, npt.NDArray[np.bool_]]]:
     """Return value and lower bound of each part for every quantity."""
     table, bounds = {}, {}
     for quantity in QUANTITIES:
         rows = []
-        for places in groups:
-            events = [event for place in places for event in reports[place].events]
-            known = [(getattr(e, quantity), e.is_lower_bound) for e in events]
+        for part in groups:
+            known = [
+                (start.get(quantity), bound)
+                for one in part
+                for start, bound in zip(one.starts, one.bounds, strict=True)
+            ]
             rows.append(_median([(v, b) for v, b in known if v is not None], quantity))
         table[quantity] = np.array([row[0] for row in rows], dtype=np.float64)
         bounds[quantity] = np.array([row[1] for row in rows], dtype=bool)
@@ -304,13 +342,8 @@ def _median(known: list[tuple[float, bool]], quantity: str) -> tuple[float, bool
     return float(np.median(values)), bound
 
 
-def _refused(reports: list[BreakawayReport]) -> list[str]:
-    found = []
-    for report in reports:
-        found += [f"{report.name}: {reason}" for reason in report.refused]
-        if not report.events and not report.refused:
-            found.append(f"{report.name}: has no start from rest")
-    return found
+def _refused(sources: list[_Source]) -> list[str]:
+    return [f"{one.name}: {reason}" for one in sources for reason in one.refused]
 
 
 def _correlation(

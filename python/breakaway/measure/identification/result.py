@@ -250,11 +250,11 @@ class Identification(OneLine):
         free = inner.problem.layout.free
         at = np.tile(inner.best, (samples, 1))
         rng = np.random.default_rng(seed)
-        matrix = inner.covariance.matrix[np.ix_(told, told)]
-        center = np.zeros(len(told))
-        at[:, told] += rng.multivariate_normal(
-            center, matrix, samples, check_valid="ignore", method="svd"
-        )
+        if told:
+            matrix = inner.covariance.matrix[np.ix_(told, told)]
+            at[:, told] += rng.multivariate_normal(
+                np.zeros(len(told)), matrix, samples, check_valid="ignore", method="svd"
+            )
         drawn = {one.name: one.external(at[:, i]) for i, one in enumerate(free)}
         mirrored = {
             one.name: np.abs(drawn[one.name]) if one.may_vanish else drawn[one.name] for one in free

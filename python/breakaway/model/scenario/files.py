@@ -281,6 +281,27 @@ def save_scenario(scenario: Scenario, path: str | Path) -> None:
     write_atomically(Path(path), scenario_toml(scenario).encode())
 
 
+def save_population(population: PartPopulation, path: str | Path) -> None:
+    """Write a population as TOML, whole or not at all.
+
+    Parameters
+    ----------
+    population : PartPopulation
+        What is written.
+    path : str or Path
+        The file; missing folders are made.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written.
+
+    """
+    check_arguments(save_population, locals(), ScenarioError)
+    text = tomli_w.dumps(population.model_dump(exclude_none=True), multiline_strings=True)
+    write_atomically(Path(path), text.encode())
+
+
 def scenario_schema() -> dict[str, Any]:
     """The JSON Schema of a scenario."""
     return Scenario.model_json_schema()

@@ -23,3 +23,5 @@ class JointSource(Model):
     """Where ``joint.residual_n`` is from, which no log tells. Empty: the scenario states it."""
     dropped: Text = ""
     """What the log told of the joint and no scenario has a place for. Empty: nothing."""
+    at_least: Text = ""
+    """Which of its numbers are bounds from below, and why. Empty: none."""

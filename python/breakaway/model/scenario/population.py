@@ -102,6 +102,9 @@ class PartPopulation(Model):
     """How its parts differ."""
     correlations: list[Correlation] = Field(default_factory=list)
     """Which of their quantities go together. Left out: none."""
+    assumed: dict[str, Text] = Field(default_factory=dict)
+    """Which of their quantities have a range that no log told -> why. For information; left out:
+    the file does not say."""
     variation: VariationKind = "field"
     """How the friction of a part varies, where a trial or a comparison asks for nothing else:
     along the way (``field``), from part to part (``part``), anew in time as in the paper
@@ -138,7 +141,10 @@ class PartPopulation(Model):
         return medians | {LEVEL_DRAW: 0.0}
 
     @model_validator(mode="after")
-    def _parts_can_be_correlated(self) -> Self:
+    def _names_its_quantities(self) -> Self:
+        for name in self.assumed:
+            if name not in QUANTITIES:
+                raise ValueError(f"assumed: {name!r} is not one of {', '.join(QUANTITIES)}")
         check_correlations(QUANTITIES, self.correlations)
         for place, correlation in enumerate(self.correlations):
             for name in correlation.of:

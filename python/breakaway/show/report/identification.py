@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import floor, isfinite, log10
@@ -15,7 +13,7 @@ from matplotlib.figure import Figure
 
 from breakaway._core import __version__
 from breakaway.base.output import write_atomically
-from breakaway.drawing.style import save_figure, scaled
+from breakaway.drawing.style import scaled
 from breakaway.errors import LogError
 from breakaway.measure.identification.comparison import ComparedLaw
 from breakaway.measure.identification.curve import peak_in_words
@@ -36,7 +34,7 @@ from breakaway.show.plots.identification import (
     plot_profiles,
     plot_residual,
 )
-from breakaway.show.report.page import inline_svg, render
+from breakaway.show.report.page import drawn_svg, render
 
 DRAWN = 4000
 """Draws from the normal distribution where no posterior is given."""
@@ -444,7 +442,8 @@ def _plans(
         plans.append(_held_out_plan(held_out))
     plans += _friction_plans(found)
     plans.append(_residual_plan(found))
-    plans.append(_posterior_plan(found, posterior))
+    if any(one.identifiable for one in found.estimates):
+        plans.append(_posterior_plan(found, posterior))
     if profiles:
         plans.append(_profile_plan(found, profiles))
     plans.append(_drift_plan(found))
@@ -575,7 +574,9 @@ def _drawn(plans: Sequence[_Plan]) -> tuple[list[Shown], list[str]]:
             left_out.append(f"{plan.title.rstrip('.')}: {error}.")
             continue
         shown.append(
-            Shown(plan.key, plan.title, plan.caption, _alt(plan, figure), _svg(figure, plan.key))
+            Shown(
+                plan.key, plan.title, plan.caption, _alt(plan, figure), drawn_svg(figure, plan.key)
+            )
         )
     return shown, left_out
 
@@ -585,13 +586,3 @@ def _alt(plan: _Plan, figure: Figure) -> str:
     labels = ((one.get_ylabel(), one.get_xlabel()) for one in figure.axes)
     shown = (" over ".join(filter(None, pair)) for pair in labels)
     return f"{plan.title} {'; '.join(dict.fromkeys(filter(None, shown)))}".replace("\n", " ")
-
-
-def _svg(figure: Figure, key: str) -> Markup:
-    """Return the drawing for the inside of a page, without the metadata that name their makers."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"{key}.svg"
-        save_figure(figure, path)
-        bare = re.sub(r"<metadata>.*?</metadata>", "", path.read_text(encoding="utf-8"), flags=re.S)
-        path.write_text(bare, encoding="utf-8")
-        return inline_svg(path)

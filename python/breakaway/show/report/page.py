@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+import tempfile
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import jinja2
 from markupsafe import Markup
+from matplotlib.figure import Figure
 
 from breakaway.base.text import visible_lines
+from breakaway.drawing.style import save_figure
 
 
 def render(template: str, **context: Any) -> str:  # noqa: ANN401 - whatever the template wants
@@ -52,6 +55,16 @@ def inline_svg(path: Path) -> Markup:
     opening, rest = svg.split(">", 1)
     opening = re.sub(r' (width|height)="[^"]*"', "", opening)
     return Markup(f"{opening}>{rest}")
+
+
+def drawn_svg(figure: Figure, key: str) -> Markup:
+    """Give a drawing for the inside of a page, without the metadata that name their makers."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{key}.svg"
+        save_figure(figure, path)
+        bare = re.sub(r"<metadata>.*?</metadata>", "", path.read_text(encoding="utf-8"), flags=re.S)
+        path.write_text(bare, encoding="utf-8")
+        return inline_svg(path)
 
 
 def decimal_number(value: float, places: int) -> str:
