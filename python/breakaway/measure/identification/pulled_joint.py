@@ -285,7 +285,7 @@ def _draws(pull: Pull, assumed: Mapping[str, Assumed], mass_kg: float | None, se
     for _ in range(ROUNDS):
         rows = _rows(pull, assumed, mass_kg, rng)
         positive = [column > 0.0 for path, column in rows.items() if path != VISCOUS]
-        good = np.all(positive, axis=0)
+        good = np.all([*positive, *map(np.isfinite, rows.values())], axis=0)
         kept = {p: np.append(kept.get(p, ()), column[good]) for p, column in rows.items()}
         if len(kept["joint.stiction_n"]) >= DRAWS:
             break
@@ -316,10 +316,13 @@ def _rows(
     v = pull.sliding_speed_m_per_s
     if pull.coulomb_n is not None and v is not None:
         dry = level - rows[VISCOUS] * v
-        e = np.exp(-((v / rows["joint.stribeck_velocity_m_per_s"]) ** 2))
-        if pull.stiction_n.at_least:  # as far as F_c > 0 allows
-            least = np.maximum(level, pull.stiction_n.value)
-            most = least + rng.random(DRAWS) * (np.maximum(dry / e, least) - least)
-            rows["joint.stiction_n"] = np.minimum(rows["joint.stiction_n"], most)
-        rows["joint.coulomb_n"] = dry - (rows["joint.stiction_n"] - dry) * e / (1.0 - e)
+        fallen = (v / rows["joint.stribeck_velocity_m_per_s"]) ** 2
+        e, rest = np.exp(-fallen), -np.expm1(-fallen)
+        # A slide much slower than v_s tells nothing of F_c: such rows are not finite, and dropped.
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            if pull.stiction_n.at_least:  # as far as F_c > 0 allows
+                least = np.maximum(level, pull.stiction_n.value)
+                most = least + rng.random(DRAWS) * (np.maximum(dry / e, least) - least)
+                rows["joint.stiction_n"] = np.minimum(rows["joint.stiction_n"], most)
+            rows["joint.coulomb_n"] = dry - (rows["joint.stiction_n"] - dry) * e / rest
     return rows
