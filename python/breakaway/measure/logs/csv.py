@@ -39,7 +39,7 @@ from breakaway.measure.logs.raw import (
     whole,
 )
 from breakaway.measure.logs.stamps import LOST, is_stamp, nanoseconds
-from breakaway.measure.logs.text_file import TextFile, survey
+from breakaway.measure.logs.text_file import ONE_BYTE, TextFile, survey
 
 LONGEST_ROW = 4 * 2**20
 """Most characters of a row."""
@@ -102,6 +102,8 @@ def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile
     layout = seen.layout
     file = _without_footer(raw, replace(file, squeezes=layout.delimiter == " "), seen)
     top = seen.top or _top_as_told(file, layout)
+    if top.is_ragged and file.encoding in ONE_BYTE:
+        file = replace(file, padded=(layout.delimiter.encode(), len(top.names) - 1))
     check_names(path, len(top.names), max(map(len, top.names), default=0))
     names, is_open = _told_apart(top.names), False
     if seen.top is not None:
@@ -512,8 +514,9 @@ def _blocks(
             if len(cells) != count:
                 raise LogError(
                     f"{path.name}: row {row}: {len(cells)} cells where the header has {count}; "
-                    "every row must have as many as the header: repair the row, or export again; "
-                    "csv.skip_rows in a mapping leaves out lines above the header"
+                    "every row must have as many as the header: repair the row, or drop such rows "
+                    "with --drop-bad-rows (drop_bad_rows=True); csv.skip_rows in a mapping leaves "
+                    "out lines above the header"
                 )
             if is_open and cells[-1]:
                 raise LogError(
@@ -573,7 +576,8 @@ class _Column:
         thousands = f" (or {other!r} stands between thousands)" if other in cell else ""
         return (
             f"{cell[:40]!r} is {reason}{thousands}; it must be a finite number such as "
-            f"-1{self.decimal}5e-3: cut the row out, or export the log again"
+            f"-1{self.decimal}5e-3: drop such rows with --drop-bad-rows (drop_bad_rows=True), or "
+            "export the log again"
         )
 
 

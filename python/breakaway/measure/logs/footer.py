@@ -44,6 +44,8 @@ def find_footer(file: TextFile, reading: Reading) -> Footer | None:
         if text.strip():
             if reading.is_row(cells):
                 return Footer(begin, below, rows[::-1]) if rows else None
+            if rows == ["EOF"] and len(cells) < reading.width:
+                return Footer(begin, below, rows)
             if len(rows) >= MOST_ROWS or not _is_below(cells, reading, is_last=not rows):
                 return None
             rows.append(text.strip())

@@ -11,6 +11,7 @@ import csv
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 
 from breakaway.base.one_line import counted
@@ -52,6 +53,8 @@ class Top:
     skipped: int = 0
     """How many lines stand above the names."""
     has_header: bool = True
+    is_ragged: bool = False
+    """Whether rows get shorter where columns on the right have ended."""
 
 
 @dataclass(frozen=True)
@@ -173,31 +176,38 @@ def _reading(lines: list[str], given: CsvMapping) -> Reading | None:
 
 
 def _way(rows: list[tuple[int, list[str]]], mark: str, decimal: str) -> Reading | None:
-    """Find the longest run of rows of numbers."""
+    """Return how lines that were split read by one decimal mark; None where as no table."""
+    run = _longest_run([cells for _, cells in rows], decimal)
+    if len(run) < FEWEST_ROWS or (mark == " " and re.search("[;\t]", "".join(run[0]))):
+        return None
+    columns = [
+        [cell for cell in found if cell.strip()] for found in zip_longest(*run, fillvalue="")
+    ]
+    values = [sum(is_value(cell, decimal) for cell in found) for found in columns]
+    blank = {place for place, found in enumerate(columns) if not found}
+    numbers = [
+        place
+        for place, found in enumerate(columns)
+        if found and len(found) - values[place] <= MOST_BAD * len(found)
+    ]
+    others = len(columns) - len(blank) - len(numbers)
+    if len(numbers) < max(2, 1 + others):
+        return None
+    return Reading(mark, decimal, rows, len(columns), numbers, blank, others == 0, sum(values))
+
+
+def _longest_run(rows: list[list[str]], decimal: str) -> list[list[str]]:
+    """Return the longest run of rows that are numbers for the most part, none longer than before."""
     best: list[list[str]] = []
     run: list[list[str]] = []
-    for _, cells in rows:
+    for cells in rows:
         filled = [cell for cell in cells if cell.strip()]
         good = sum(is_value(cell, decimal) for cell in filled)
         is_row = len(cells) > 1 and 2 * good > len(filled)
-        goes_on = is_row and bool(run) and len(cells) == len(run[0])
+        goes_on = is_row and bool(run) and len(cells) <= len(run[0])
         run = [*run, cells] if goes_on else [cells] if is_row else []
         best = max(best, run, key=len)
-    if len(best) < FEWEST_ROWS or (mark == " " and any(";" in c or "\t" in c for c in best[0])):
-        return None
-    columns = [[cell for cell in cells if cell.strip()] for cells in zip(*best, strict=True)]
-    good = [sum(is_value(cell, decimal) for cell in cells) for cells in columns]
-    blank = {k for k, cells in enumerate(columns) if not cells}
-    numbers = [
-        k
-        for k, cells in enumerate(columns)
-        if cells and len(cells) - good[k] <= MOST_BAD * len(cells)
-    ]
-    filled = len(columns) - len(blank)
-    if len(numbers) < 2 or 2 * len(numbers) <= filled:
-        return None
-    is_whole = len(numbers) == filled
-    return Reading(mark, decimal, rows, len(columns), numbers, blank, is_whole, sum(good))
+    return best
 
 
 def _check_thousands(path: Path, reading: Reading) -> None:
@@ -241,15 +251,13 @@ def _top(lines: list[str], reading: Reading) -> Top | None:
         below = number
     if not block:
         return None
-    names, units = block[-1], [""] * reading.width
-    if len(block) > 1 and _are_units(block[-1]):
-        names, units = block[-2], ["" if one == "-" else one.strip("[]()") for one in block[-1]]
-    elif len(block) > 1 and not all(bracketed(name)[1] for name in names if name):
+    has_units = len(block) > 1 and _are_units(block[-1])
+    names = block[-1 - has_units]
+    is_certain = has_units or len(block) == 1 or all(bracketed(name)[1] for name in names if name)
+    if not (is_certain and _are_names(names, reading)):
         return None
-    if not _are_names(names, reading):
-        return None
-    above = [number for number, _ in reading.rows[:first]][-1 - any(units)]
-    return Top(begin, names, units, above)
+    units = [one.strip("[]()").strip("-") if has_units else "" for one in block[-1]]
+    return Top(begin, names, units, reading.rows[first - 1 - has_units][0])
 
 
 def _fitted(cells: list[str], line: str, reading: Reading) -> list[str] | None:
@@ -305,4 +313,4 @@ def _of_twincat(reading: Reading, first: int) -> Top | None:
         since_start = is_time and len(cell.partition(reading.decimal)[0]) <= LONGEST_MS
         told = "" if is_time or unit == "(None)" else unit.partition(" (")[0]
         units.append("ms" if since_start else told)
-    return Top(lines, names, units, above)
+    return Top(lines, names, units, above, is_ragged=names.count("Time") > 1)

@@ -9,13 +9,16 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from breakaway.base.reading import open_regular
 from breakaway.errors import LogError
 
 BLOCK = 2**20
 """Bytes that are read at a time."""
+
+LONGEST_LINE = 2**23
+"""More bytes than these are no line that a reader takes; they are not kept together."""
 
 ASCII = bytes(range(128))
 
@@ -47,6 +50,8 @@ class TextFile:
         Bytes that count; what follows is none of the table.
     squeezes : bool
         Whether runs of blanks become one, and none stay at the ends of lines.
+    padded : tuple of bytes and int, optional
+        The mark between cells, and how many of them a shorter row is filled up to.
 
     """
 
@@ -56,16 +61,22 @@ class TextFile:
     is_told: bool = True
     end: int | None = None
     squeezes: bool = False
+    padded: tuple[bytes, int] | None = None
 
     @contextmanager
     def binary(self) -> Iterator[BinaryIO]:
         """Open the bytes that count."""
         with open_regular(self.path) as file:
-            if self.end is None and not self.squeezes:
+            if self.end is None and self.padded is None and not self.squeezes:
                 yield file
             else:
                 chunks = _chunks(file, self.end)
-                raw = _Stream(_squeezed(chunks) if self.squeezes else chunks)
+                if self.squeezes:
+                    chunks = map(_squeezed, _whole_lines(chunks))
+                if self.padded is not None:
+                    mark, count = self.padded
+                    chunks = (_filled(lines, mark, count) for lines in _whole_lines(chunks))
+                raw = _Stream(chunks)
                 with io.BufferedReader(raw, BLOCK) as stream:
                     yield stream
 
@@ -86,7 +97,7 @@ class _Stream(io.RawIOBase):
     def readable(self) -> bool:
         return True
 
-    def readinto(self, buffer: bytearray | memoryview, /) -> int:  # type: ignore[override]
+    def readinto(self, buffer: Any, /) -> int:  # noqa: ANN401 - any buffer can be written to
         if not self.rest:
             self.rest = memoryview(next(self.chunks, b""))
         count = min(len(buffer), len(self.rest))
@@ -102,15 +113,41 @@ def _chunks(file: BinaryIO, end: int | None) -> Iterator[bytes]:
         yield block
 
 
-def _squeezed(chunks: Iterator[bytes]) -> Iterator[bytes]:
-    """Make one blank of each run, and none of those at the ends of lines."""
+def _whole_lines(chunks: Iterator[bytes]) -> Iterator[bytes]:
+    """Give chunks that end where a line does."""
     rest = b""
     for chunk in chunks:
         whole, mark, rest = (rest + chunk).rpartition(b"\n")
         if mark:
-            yield re.sub(rb"  +", b" ", BLANKS.sub(b"", whole)) + mark
-    if rest.strip():
-        yield re.sub(rb"  +", b" ", rest.strip(b" "))
+            yield whole + mark
+        if len(rest) > LONGEST_LINE:
+            yield rest
+            rest = b""
+    if rest:
+        yield rest
+
+
+def _squeezed(lines: bytes) -> bytes:
+    r"""Make one blank of each run, and none of those at the ends of lines.
+
+    >>> _squeezed(b"  1.5   2 \n  3  4")
+    b'1.5 2\n3 4'
+    """
+    return re.sub(rb"  +", b" ", BLANKS.sub(b"", lines))
+
+
+def _filled(lines: bytes, mark: bytes, count: int) -> bytes:
+    r"""Add marks to rows that have fewer.
+
+    >>> _filled(b"1;2;3\n4\n\n", b";", 2)
+    b'1;2;3\n4;;\n\n'
+    """
+    full = []
+    for line in lines.splitlines(keepends=True):
+        text = line.rstrip(b"\r\n")
+        missing = count - text.count(mark)
+        full.append(text + missing * mark + line[len(text) :] if text and missing > 0 else line)
+    return b"".join(full)
 
 
 def survey(path: Path, given: str | None) -> TextFile:
