@@ -16,11 +16,11 @@ import timeit
 from pathlib import Path
 
 import numpy as np
-from logs import AIMS as LOG_AIMS
-from logs import logs
 
 from breakaway import _core
 from breakaway.run.batch.columns import core_columns, with_nominal_controller
+from logs import AIMS as LOG_AIMS
+from logs import logs
 
 ROOT = Path(__file__).parents[1]
 SIMULATED_S = 0.5

@@ -1,5 +1,7 @@
 """The layout of a text file is seen where it can be read in one way, and told; else refused."""
 
+import contextlib
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -7,6 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from breakaway.errors import LogError
 from breakaway.measure.logs import Log, list_channels, read_log
@@ -235,3 +239,39 @@ def test_a_column_that_ends_early_ends(write: Write) -> None:
     np.testing.assert_allclose(log.channels["force_n"].t_s, T_S[:30])
     assert log.channels["position_m"].rows == ROWS
     assert "the last 10 cells hold nothing" in str(log.findings[0])
+
+
+PIECE = st.sampled_from(
+    ["1", "1.5", "2,5", "1.100", "t_s", "x_m", "force_n", "s", "mm", "[N]", '"', "8:00:00", "nan"]
+    + [",", ";", "\t", " ", "  ", "\n", "\r\n", "\r", "\n\n", "#", "Name", "EOF", "µ", "\0"]
+)
+
+
+@pytest.mark.slow
+@given(st.lists(PIECE, max_size=120).map("".join), st.sampled_from(["utf-8", "cp1252", "utf-16"]))
+def test_any_text_is_read_or_refused(text: str, encoding: str) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "fuzz.csv"
+        path.write_bytes(text.encode(encoding))
+        for drops in (False, True):
+            with contextlib.suppress(LogError):
+                assert read_log(path, drop_bad_rows=drops).channels
+
+
+@pytest.mark.slow
+@given(
+    st.lists(
+        st.lists(st.sampled_from(["1", "2.5", "-3,5", "", "x", '"a"']), max_size=4), max_size=15
+    ),
+    st.sampled_from([",", ";", "\t", " "]),
+    st.sampled_from(["", "Max;1\n", "EOF\n", "made by a rig\n"]),
+)
+def test_any_rows_are_read_or_refused(table: list[list[str]], mark: str, around: str) -> None:
+    rows = [mark.join(row) for row in [["t_s", "x_m", "force_n"], *table * 3]]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "fuzz.csv"
+        path.write_text(around + "\n".join(rows) + "\n" + around)
+        for drops in (False, True):
+            with contextlib.suppress(LogError):
+                log = read_log(path, drop_bad_rows=drops)
+                assert all(np.isfinite(one.values).all() for one in log.channels.values())

@@ -89,7 +89,7 @@ def test_dewesoft(tmp_path: Path) -> None:
 
 
 def scope(mark: str, decimal: str) -> str:
-    """Return an export of two channels, the second at a fifth of the rate of the first."""
+    """Return an export of two channels, the second at a quarter of the rate of the first."""
     header = [
         ["Name", "pull_3", ""],
         ["Starttime of export", "132959733843760000", "Montag, 2. Mai 2022", "15:56:24.376"],
@@ -97,7 +97,7 @@ def scope(mark: str, decimal: str) -> str:
         ["Name", "Force", "Name", "Position"],
         ["SymbolComment", "", "SymbolComment"],
         ["Data-Type", "REAL64", "Data-Type", "REAL64"],
-        ["SampleTime[ms]", "20", "SampleTime[ms]", "100"],
+        ["SampleTime[ms]", "20", "SampleTime[ms]", "80"],
         ["Port", "851", "Port", "851"],
         ["Offset", "0", "Offset", "0"],
         ["Unit", "N (Force)", "Unit", "mm (Length)"],
@@ -105,8 +105,8 @@ def scope(mark: str, decimal: str) -> str:
         [],
     ]
     rows = [[1e3 * T_S[k], FORCE[k]] for k in range(ROWS)]
-    for k in range(ROWS // 5):
-        rows[k] += [5e3 * T_S[k], POSITION_MM[5 * k]]
+    for k in range(ROWS // 4):
+        rows[k] += [4e3 * T_S[k], POSITION_MM[4 * k]]
     cells = [[f"{one:g}".replace(".", decimal) for one in row] for row in rows]
     return "".join(mark.join(row) + "\n" for row in [*header, *cells]) + "EOF\n"
 
@@ -121,10 +121,10 @@ def test_twincat_scope(tmp_path: Path, mark: str, decimal: str) -> None:
     force, position = log.channels["force_n"], log.channels["position_m"]
     np.testing.assert_allclose(force.t_s, T_S, atol=1e-12)
     np.testing.assert_allclose(force.values, FORCE)
-    np.testing.assert_allclose(position.t_s, T_S[::5], atol=1e-12)
-    np.testing.assert_allclose(position.values, POSITION_MM[::5] * 1e-3)
+    np.testing.assert_allclose(position.t_s, T_S[::4], atol=1e-12)
+    np.testing.assert_allclose(position.values, POSITION_MM[::4] * 1e-3)
     assert {one.kind for one in log.noticed} == {"footer", "ends"}
-    assert log.resampled(rate_hz=50.0).rows == 36
+    assert log.resampled(rate_hz=50.0).rows == 37
 
 
 def test_twincat_scope_with_one_time_column(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -145,7 +146,20 @@ def _mapped(raw: RawFile, mapping: Mapping) -> list[Pick]:
         picks.append(
             Pick(channel, name, unit.symbol, factor, keys.sign * unit.offset, time=keys.time)
         )
-    return picks
+    return picks if any(pick.time for pick in picks) else picks + _left_to_headers(raw, picks)
+
+
+def _left_to_headers(raw: RawFile, picks: list[Pick]) -> list[Pick]:
+    """Choose position and force by their headers where a mapping does not name them."""
+    taken = {pick.column for pick in picks}
+    missing = REQUIRED.keys() - {pick.channel for pick in picks}
+    found = [one for one in read_headers(raw) if one.channel in missing and one.name not in taken]
+    count = Counter(one.channel for one in found)
+    return [
+        Pick(one.channel, one.name, one.unit.symbol, one.unit.factor, one.unit.offset)
+        for one in found
+        if count[one.channel] == 1
+    ]
 
 
 def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> FileUnit:

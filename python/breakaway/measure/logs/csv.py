@@ -68,6 +68,9 @@ PLAIN = {
 }
 """Decimal mark -> a number."""
 
+BYTES_PER_CHANGE = 60
+"""A cell as a text of Arrow, with its copies while it is changed."""
+
 Found = tuple[Array | str, npt.NDArray[np.intp] | None, int]
 """Numbers of a column or why there are none, the rows that they stand in where not all do, rows."""
 
@@ -179,8 +182,6 @@ class _Reading:
         """Read stamps, then numbers."""
         kept = len(wanted) * self.table.file.lines
         self.budget.take("its rows", 8 * kept, 10 * kept)
-        if self.raw.keeps_bad and self._read_damaged(wanted):
-            return
         self._read_stamps([name for name in wanted if name in self.stamped])
         self._read_numbers([name for name in wanted if name not in self.stamped])
 
@@ -191,6 +192,8 @@ class _Reading:
         if self.zero_ns is None and starts:
             self.zero_ns = min(starts)
         for name, one in found.items():
+            if one is None and self.raw.keeps_bad and self._read_damaged([name]):
+                continue
             if one is None:
                 self.raw.give_up(name, "holds cells that are no time stamp such as the first one")
             else:
@@ -201,6 +204,8 @@ class _Reading:
             return
         columns = [self.places[name] for name in wanted]
         plain = self.table.by_arrow(columns)
+        if plain is None and self.raw.keeps_bad and self._read_damaged(wanted):
+            return
         if plain:
             self._tell_blank(max(rows for *_, rows in plain))
         else:
@@ -218,7 +223,7 @@ class _Reading:
 
     def _read_damaged(self, wanted: list[str]) -> bool:
         """Read columns of which rows will be dropped: NaN where a cell is no number or stamp."""
-        self.budget.take("its cells", 0, len(wanted) * BYTES_PER_TEXT * self.table.file.lines)
+        self.budget.take("its cells", 0, len(wanted) * BYTES_PER_CHANGE * self.table.file.lines)
         found = self.table.damaged([self.places[name] for name in wanted])
         if found is None:
             return False

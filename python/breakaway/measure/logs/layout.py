@@ -193,11 +193,12 @@ def _way(rows: list[tuple[int, list[str]]], mark: str, decimal: str) -> Reading 
     others = len(columns) - len(blank) - len(numbers)
     if len(numbers) < max(2, 1 + others):
         return None
-    return Reading(mark, decimal, rows, len(columns), numbers, blank, others == 0, sum(values))
+    way = Reading(mark, decimal, rows, len(columns), numbers, blank, others == 0, sum(values))
+    return way if sum(map(way.is_row, run)) >= FEWEST_ROWS else None
 
 
 def _longest_run(rows: list[list[str]], decimal: str) -> list[list[str]]:
-    """Return the longest run of rows that are numbers for the most part, none longer than before."""
+    """Return the longest run of rows that are mostly numbers, none wider than the first of it."""
     best: list[list[str]] = []
     run: list[list[str]] = []
     for cells in rows:
