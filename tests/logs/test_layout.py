@@ -241,10 +241,10 @@ def test_a_column_that_ends_early_ends(write: Write) -> None:
     assert "the last 10 cells hold nothing" in str(log.findings[0])
 
 
-PIECE = st.sampled_from(
-    ["1", "1.5", "2,5", "1.100", "t_s", "x_m", "force_n", "s", "mm", "[N]", '"', "8:00:00", "nan"]
-    + [",", ";", "\t", " ", "  ", "\n", "\r\n", "\r", "\n\n", "#", "Name", "EOF", "µ", "\0"]
-)
+WORDS = ["1", "1.5", "2,5", "1.100", "t_s", "x_m", "force_n", "s", "mm", "[N]", "8:00:00", "nan"]
+MARKS = [",", ";", "\t", " ", "  ", "\n", "\r\n", "\r", "\n\n", "#", "Name", "EOF", "µ", "\0", '"']
+PIECE = st.sampled_from([*WORDS, *MARKS])
+CELL = st.sampled_from(["1", "2.5", "-3,5", "", "x", '"a"'])
 
 
 @pytest.mark.slow
