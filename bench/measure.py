@@ -19,6 +19,8 @@ import numpy as np
 
 from breakaway import _core
 from breakaway.run.batch.columns import core_columns, with_nominal_controller
+from logs import AIMS as LOG_AIMS
+from logs import logs
 
 ROOT = Path(__file__).parents[1]
 SIMULATED_S = 0.5
@@ -244,6 +246,7 @@ AIMS = {
     "identify_emps_32_starts_s": ("<=", 30.0),
     "identify_gradient_over_simulation": ("<=", 5.0),
     "identify_posterior_of_10000_s": ("<=", 120.0),
+    **LOG_AIMS,
 }
 """What the project aims for."""
 GATE = "by_hand_over_batch"
@@ -266,6 +269,7 @@ def main() -> None:
         **batch_memory(),
         **study_memory(),
         **identification(),
+        **logs(),
         **kernel(),
     }
     print(f"{'figure':48s} {'measured':>12s} {'aim':>14s}")

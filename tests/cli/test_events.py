@@ -72,3 +72,21 @@ def test_refuses_a_bad_option(call: Callable[..., Any], logs: list[str]) -> None
     done = call("events", logs[0], "--use", "friction_n")
     assert done.exit_code == 2
     assert "CHANNEL=OTHER" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_log_is_cut_and_bad_rows_dropped_before_anything_else(
+    call: Callable[..., Any], logs: list[str]
+) -> None:
+    path = Path(logs[0])
+    rows = path.read_text().splitlines()
+    rows[200], rows[2900] = "0.199,OVL,1", f"{rows[2899]}"
+    path.write_text("\n".join(rows))
+    refused = call("events", path)
+    assert refused.exit_code == 2
+    assert "'OVL' is not a number" in refused.stderr and "--drop-bad-rows" in refused.stderr
+    found = json.loads(call("events", path, "--drop-bad-rows", "--json").stdout)["logs"][0]
+    assert found["events"][0]["breakaway_force_n"] == pytest.approx(20.0, abs=0.1)
+    kept = call("events", path, "--drop-bad-rows", "--between", 0.3, 2.5, "--json")
+    assert json.loads(kept.stdout)["logs"][0]["events"][0]["time_s"] == found["events"][0]["time_s"]
+    short = call("events", path, "--drop-bad-rows", "--between", 7, 8)
+    assert "from 7 s to 8 s 'position_m' has 0 samples" in short.stderr

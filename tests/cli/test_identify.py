@@ -299,3 +299,20 @@ def test_a_bad_option_is_one_line_and_writes_nothing(
     if failed.stderr.startswith("error: "):
         assert failed.stderr.count("\n") == 1
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_log_is_cut_before_it_is_resampled(call: Call, tmp_path: Path) -> None:
+    t_s = np.delete(np.arange(4000) / 1000.0, slice(3000, 3500))
+    x, v = 0.06 * np.sin(5 * t_s), 0.3 * np.cos(5 * t_s)
+    force = 3.0 * -1.5 * np.sin(5 * t_s) + 25.0 * v + 30.0 * np.sign(v)
+    path = tmp_path / "gap.csv"
+    rows = np.column_stack([t_s, x, force])
+    np.savetxt(path, rows, delimiter=",", header="t_s,position_m,force_n", comments="")
+    refused = call("identify", path, "--resample-hz", 500)
+    assert refused.exit_code == 2
+    assert "has a gap of 0.501 s after 2.999 s" in refused.stderr and "--between" in refused.stderr
+    done = call("identify", path, "--between", 0, 2.9, "--resample-hz", 500, "--json")
+    assert done.exit_code == 0, done.stderr
+    assert json.loads(done.stdout)["symmetric"]["mass_kg"] == pytest.approx(3.0, rel=0.05)
+    again = call("identify", path, "--drop-bad-rows", "--between", 0, 2.9, "--json")
+    assert json.loads(again.stdout)["symmetric"]["mass_kg"] == pytest.approx(3.0, rel=0.05)

@@ -351,7 +351,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"fixed": {"coulomb_n": -5.0}}, r"fixed\.coulomb_n: -5.0 is not within"),
     ({"fixed": {"mass_kg": -1.0}}, r"fixed\.mass_kg: -1.0 is not within 0"),
     ({"fixed": {"mass_kg": "1"}}, r"fixed\.mass_kg: '1' is not a number"),
-    ({"fixed": {"coulomb_n": 5.0}, "free": ["coulomb_n"]}, "free: 'coulomb_n' is fixed too"),
+    ({"fixed": {"coulomb_n": 5.0}, "free": ["coulomb_n"]}, "'coulomb_n' is fixed too"),
     ({"seed": -1}, "seed: -1 is not a whole number"),
     ({"force_limit_n": -1.0}, "force_limit_n: -1.0 is not > 0"),
     ({"origin_m": math.inf}, "origin_m: inf is not a finite position"),

@@ -77,7 +77,7 @@ def test_lists_the_columns_that_it_does_not_read(write: Write) -> None:
         (table("t_s,position_m,Force_mm"), "'force_n' is missing; the nearest .*'Force_mm'"),
         (table("t_s,position_m,force"), r"motor.toml, such as: channels.force_n = { from = "),
         (table("t_s,x_m,position_m"), "columns 'x_m' and 'position_m' both give 'position_m'"),
-        (table().replace(",", ";"), "one cell; columns must be separated by commas"),
+        ("t_s;position_m;force_n\n0;1;2\n", "one cell; columns must be separated by commas"),
         (
             "t_s,x_m,force_n,force_n\n" + "0,1,2,3\n" * 10,
             "columns 'force_n#1' and 'force_n#2' both give 'force_n'",
@@ -202,9 +202,9 @@ def test_lines_above_the_header_may_hold_anything(write: Write, above: str) -> N
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("made by a rig\n" + table(), r"csv\.skip_rows in a mapping leaves out lines"),
-        (table().replace(",", "\t"), r'delimiter = "\\t"'),
-        (table().replace(",", ";"), 'delimiter = ";"'),
+        ("x,y,z\n" + table(), "'position_m' is missing; present are x, y, z"),
+        ("t_s\tx_m\tforce_n\n0\t1\t2\n", r'delimiter = "\\t"'),
+        ("t_s;x_m;force_n\n0;1;2\n", 'delimiter = ";"'),
     ],
 )
 def test_a_layout_that_needs_a_mapping_is_told(write: Write, text: str, words: str) -> None:

@@ -46,7 +46,8 @@ def test_only_what_is_wanted_is_read(every_file: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(RawFile, "load", note)
     listed = [one.name for one in list_channels(every_file).channels]
     name = next(name for name in listed if "position" in name)
-    log = read_log(every_file, {"channels": {"position_m": {"from": name, "unit": "m"}}})
+    channels = {"position_m": {"from": name, "unit": "m"}, "force_n": {"from": name, "unit": "N"}}
+    log = read_log(every_file, {"channels": channels})
     assert log.channels["position_m"].rows == ROWS
     assert asked and not [name for name in asked if "force" in name]
 

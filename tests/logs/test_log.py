@@ -77,9 +77,7 @@ def test_further_channels_have_names_with_units() -> None:
 def test_names_the_remedy_for_an_absent_channel() -> None:
     log = Log(t_s=np.arange(40.0), channels={"friction_n": np.ones(40)}, ignored_columns=("load",))
     assert (log.rows, log.reference_m, log.velocity_m_per_s) == (40, None, None)
-    words = (
-        r"no channel 'force_n'; present are friction_n .*load.*log.using\(force_n=\"friction_n\"\)"
-    )
+    words = r"no channel 'force_n'; present are friction_n .*load.*--use force_n=friction_n \(log"
     with pytest.raises(LogError, match=words):
         log.force_n  # noqa: B018
 

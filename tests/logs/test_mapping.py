@@ -159,11 +159,11 @@ def test_a_toml_file_of_another_kind_is_no_mapping(tmp_path: Path) -> None:
         read_log(path, tmp_path / "other.toml")
 
 
-def test_only_what_is_mapped_is_read(tmp_path: Path) -> None:
-    path = write(tmp_path, "t_s,supply,force_n")
+def test_only_what_is_mapped_is_read_beside_position_and_force(tmp_path: Path) -> None:
+    path = write(tmp_path, "t_s,supply,velocity_mm/s")
     log = read_log(path, {"channels": {"supply_pa": {"from": "supply", "unit": "bar"}}})
     assert list(log.channels) == ["supply_pa"]
-    assert log.ignored_columns == ("force_n",)
+    assert log.ignored_columns == ("velocity_mm/s",)
     np.testing.assert_allclose(log["supply_pa"], np.arange(20) * 10.0)
 
 
@@ -231,3 +231,21 @@ def test_the_unit_of_the_file_does_not_matter(unit: str, offset: float) -> None:
             keys = {"from": name, "unit": None if name == "x_m" else unit}
             logs.append(read_log(path, {"channels": {"position_m": keys}}))
     np.testing.assert_allclose(logs[1].position_m, logs[0].position_m, rtol=4e-16)
+
+
+def test_a_mapping_of_one_channel_leaves_the_other_to_its_header(tmp_path: Path) -> None:
+    path = tmp_path / "motor.csv"
+    rows = "".join(f"{k / 100},{k},{2 * k},{3 * k}\n" for k in range(20))
+    path.write_text("t_s,position_mm,force_N,cell_V\n" + rows)
+    path.with_suffix(".toml").write_text('[channels.force_n]\nfrom = "cell_V"\nscale = 10.0\n')
+    log = read_log(path)
+    np.testing.assert_allclose(log.position_m, np.arange(20) / 1e3)
+    np.testing.assert_allclose(log.force_n, 30.0 * np.arange(20))
+    assert log.ignored_columns == ("force_N",)
+
+
+def test_a_header_that_two_columns_share_is_not_chosen_from(tmp_path: Path) -> None:
+    path = tmp_path / "motor.csv"
+    path.write_text("t_s,x_m,position_mm,force_N\n" + "0,1,2,3\n" * 20)
+    log = read_log(path, {"channels": {"force_n": {"from": "force_N"}}})
+    assert list(log.channels) == ["force_n"]

@@ -193,19 +193,20 @@ def test_a_unit_that_contradicts_the_file_is_a_finding(tmp_path: Path) -> None:
 def test_a_table_without_a_header_keeps_its_first_row(tmp_path: Path) -> None:
     path = tmp_path / "bare.csv"
     np.savetxt(path, np.column_stack([T_S, POSITION_M, FORCE_N]), "%.17g", ",")
-    with pytest.raises(LogError, match=r"numbers alone.*csv = \{ header = false \}.*column_1"):
+    with pytest.raises(LogError, match=r"'position_m' is missing; present are column_1, column_2"):
         read_log(path)
-    mapping = {
-        "csv": {"header": False},
+    mapping: dict[str, Any] = {
         "time": {"from": "column_1", "unit": "s"},
         "channels": {
             "position_m": {"from": "column_2", "unit": "m"},
             "force_n": {"from": "column_3", "unit": "N"},
         },
     }
-    log = read_log(path, mapping)
-    assert log.rows == ROWS
-    np.testing.assert_array_equal(log.force_n, FORCE_N)
+    for layout in ({}, {"csv": {"header": False}}):
+        log = read_log(path, mapping | layout)
+        assert log.rows == ROWS
+        np.testing.assert_array_equal(log.force_n, FORCE_N)
+    assert "there is no header" in str(read_log(path, mapping).findings[0])
 
 
 def test_one_message_without_a_time_of_publishing_changes_the_clock_of_all(tmp_path: Path) -> None:

@@ -10,7 +10,16 @@ import typer
 
 from breakaway.base.one_line import counted
 from breakaway.cli.measured import measured, rig_of
-from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Rig, Use
+from breakaway.cli.options import (
+    Between,
+    DropBadRows,
+    Json,
+    MappingFile,
+    MemoryGib,
+    ResampleHz,
+    Rig,
+    Use,
+)
 from breakaway.cli.pulled import (
     check_pulled_target,
     joint_tables,
@@ -42,6 +51,8 @@ def events(
     ] = 0.5,
     mapping: MappingFile = None,
     memory_gib: MemoryGib = None,
+    drop_bad_rows: DropBadRows = False,
+    between: Between = None,
     resample_hz: ResampleHz = None,
     rig: Rig = None,
     population: Annotated[
@@ -85,7 +96,13 @@ def events(
     with busy("looking for breakaway ..."):
         for path in logs:
             log = measured(
-                path, mapping=mapping, memory_gib=memory_gib, resample_hz=resample_hz, use=use
+                path,
+                mapping=mapping,
+                memory_gib=memory_gib,
+                drop_bad_rows=drop_bad_rows,
+                between=between,
+                resample_hz=resample_hz,
+                use=use,
             )
             reports.append(find_breakaway_events(log, passed_share=passed_share, rig=stands))
             read += [] if out is None else [log]

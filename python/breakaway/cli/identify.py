@@ -15,7 +15,16 @@ from breakaway.cli.identified import law_tables, regression_tables
 from breakaway.cli.identify_options import LawChoice, LossChoice, MotionChoice
 from breakaway.cli.identify_pull import page_anyway, pull_in, tell_pull
 from breakaway.cli.measured import measured, pair, rig_of
-from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Rig, Use
+from breakaway.cli.options import (
+    Between,
+    DropBadRows,
+    Json,
+    MappingFile,
+    MemoryGib,
+    ResampleHz,
+    Rig,
+    Use,
+)
 from breakaway.cli.progress import counted
 from breakaway.cli.show import busy, say, say_aside, say_json, say_written
 from breakaway.cli.targets import check_target
@@ -52,6 +61,8 @@ def identify(
     use: Use = None,
     out: options.Out = None,
     report: options.Report = False,
+    drop_bad_rows: DropBadRows = False,
+    between: Between = None,
     resample_hz: ResampleHz = None,
     rig: Rig = None,
     lowpass_hz: options.LowpassHz = None,
@@ -89,6 +100,8 @@ def identify(
         mapping=mapping,
         format=format.value if format else None,
         memory_gib=memory_gib,
+        drop_bad_rows=drop_bad_rows,
+        between=between,
         resample_hz=resample_hz,
         use=use,
     )

@@ -16,10 +16,12 @@ def measured(
     mapping: Path | None,
     format: str | None = None,
     memory_gib: float | None,
+    drop_bad_rows: bool = False,
+    between: tuple[float, float] | None = None,
     resample_hz: float | None,
     use: list[str] | None,
 ) -> Log:
-    """Read a log, bring it to one rate, and take other channels where that is asked.
+    """Read a log, cut it, bring it to one rate, and take other channels where that is asked.
 
     Raises
     ------
@@ -30,7 +32,9 @@ def measured(
     from breakaway.measure.logs import read_log
 
     memory_bytes = None if memory_gib is None else memory_gib * 2**30
-    log = read_log(path, mapping, format, memory_bytes=memory_bytes)
+    log = read_log(path, mapping, format, memory_bytes=memory_bytes, drop_bad_rows=drop_bad_rows)
+    if between is not None:
+        log = log.between(*between)
     if resample_hz is not None:
         log = log.resampled(rate_hz=resample_hz)
     for given in use or []:

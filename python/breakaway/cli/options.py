@@ -35,6 +35,18 @@ MemoryGib = Annotated[
         show_default="half of what is free",
     ),
 ]
+DropBadRows = Annotated[
+    bool,
+    typer.Option(
+        "--drop-bad-rows",
+        help="Leave out rows with a cell that is no finite number, and rows whose stamp repeats "
+        "the one before; they are counted.",
+    ),
+]
+Between = Annotated[
+    tuple[float, float] | None,
+    typer.Option(help="Cut the log to this span in s, before anything else.", metavar="START END"),
+]
 ResampleHz = Annotated[
     float | None,
     typer.Option(help="Bring channels with different time stamps to this rate, by interpolation."),

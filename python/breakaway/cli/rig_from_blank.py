@@ -10,7 +10,15 @@ import typer
 
 from breakaway.base.reading import is_file
 from breakaway.cli.measured import measured
-from breakaway.cli.options import Json, MappingFile, MemoryGib, ResampleHz, Use
+from breakaway.cli.options import (
+    Between,
+    DropBadRows,
+    Json,
+    MappingFile,
+    MemoryGib,
+    ResampleHz,
+    Use,
+)
 from breakaway.cli.quantity import show_uncertain, split_unit
 from breakaway.cli.sheet import Sheet
 from breakaway.cli.show import busy, say, say_json, say_written
@@ -38,6 +46,8 @@ def rig_from_blank(
     use: Use = None,
     mapping: MappingFile = None,
     memory_gib: MemoryGib = None,
+    drop_bad_rows: DropBadRows = False,
+    between: Between = None,
     resample_hz: ResampleHz = None,
     json: Json = False,
 ) -> None:
@@ -52,7 +62,15 @@ def rig_from_blank(
         _check_target(logs, out)
     with busy("reading the pulls ..."):
         read = [
-            measured(path, mapping=mapping, memory_gib=memory_gib, resample_hz=resample_hz, use=use)
+            measured(
+                path,
+                mapping=mapping,
+                memory_gib=memory_gib,
+                drop_bad_rows=drop_bad_rows,
+                between=between,
+                resample_hz=resample_hz,
+                use=use,
+            )
             for path in logs
         ]
         blank = derive(read)

@@ -39,7 +39,7 @@ def check_settings(log: Log, lowpass_hz: float, decimation: int) -> None:
             f"lowpass_hz is {lowpass_hz:g}; for {log.name} ({rate:.6g} Hz) and decimation "
             f"{decimation} it must be at least {low:.6g} Hz (0.4 of the decimated rate, the band "
             f"that is fitted) and below {high:.6g} Hz (half of the sample rate): change "
-            "lowpass_hz or decimation"
+            "--lowpass-hz or --decimation (lowpass_hz, decimation)"
         )
 
 

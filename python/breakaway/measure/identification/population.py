@@ -119,7 +119,8 @@ class Population(OneLine):
         if self.correlation is None:
             raise LogError(
                 "fewer than 3 parts show both breakaway and sliding force, so their correlation is "
-                "not known: use distributions(), or record more parts"
+                "not known: record more parts, or use the two fits alone"
+                " (Population.distributions())"
             )
         rng = np.random.Generator(np.random.Philox(seed))
         hold, slide = (self.fits[name].distribution() for name in FIELDS)

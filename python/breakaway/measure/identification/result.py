@@ -157,7 +157,7 @@ class Identification(OneLine):
             if motion != "imposed" and mass_kg == 0.0:
                 raise LogError(
                     f"motion: {motion!r} needs a mass, and the fit held it at 0; identify with "
-                    "fixed={'mass_kg': ...}"
+                    "--fix mass_kg=... (fixed={'mass_kg': ...})"
                 )
         rows = measured_rows(self.log if log is None else log, settings)
         layout, best = self.internals.problem.layout, self.internals.best

@@ -36,7 +36,8 @@ def check_fixed(
     for name, value in fixed.items():
         if name not in known:
             raise LogError(
-                f"fixed: {name!r} is not a parameter of this law; those are {', '.join(known)}"
+                f"fixed (--fix): {name!r} is not a parameter of this law; those are "
+                f"{', '.join(known)}"
             )
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise LogError(f"fixed.{name}: {value!r} is not a number")
@@ -52,10 +53,11 @@ def check_free(free: Sequence[str], fixed: Mapping[str, float], names: Sequence[
     for name in free:
         if name not in names:
             raise LogError(
-                f"free: {name!r} is not a parameter of this law; those are {', '.join(names)}"
+                f"free (--free): {name!r} is not a parameter of this law; those are "
+                f"{', '.join(names)}"
             )
         if name in fixed:
-            raise LogError(f"free: {name!r} is fixed too; name it in only one of the two")
+            raise LogError(f"free (--free): {name!r} is fixed too; name it in only one of the two")
 
 
 def checked_spans(repeats: Sequence[Span]) -> list[Span]:

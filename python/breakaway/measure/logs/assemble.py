@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -11,15 +12,20 @@ import numpy.typing as npt
 
 from breakaway.base.text import brief
 from breakaway.errors import LogError
+from breakaway.measure.logs.bad_rows import without_bad_rows
 from breakaway.measure.logs.channel import Array, Channel, named
+from breakaway.measure.logs.listed import ListedChannel
 from breakaway.measure.logs.log import Log
 from breakaway.measure.logs.mapping import ChannelMapping, Mapping
 from breakaway.measure.logs.names import file_unit, nearest, read_header, read_headers
-from breakaway.measure.logs.raw import RawChannel, RawFile
+from breakaway.measure.logs.raw import RawChannel, RawFile, ends
 from breakaway.measure.logs.units import FileUnit, si_symbol, stated, unit_named
 
 REQUIRED = {"position_m": "mm", "force_n": "N"}
 """What a file without a mapping must state -> the unit that the remedy shows."""
+
+
+NONE = ListedChannel("")
 
 
 @dataclass(frozen=True)
@@ -46,10 +52,15 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
     # Channel refuses what is not finite, by its row.
     with named(raw.path.name), np.errstate(over="ignore", invalid="ignore"):
         picks = _mapped(raw, mapping) if mapping.channels else _stated(raw)
-        stamps = {pick.time or mapping.time.from_ for pick in picks} - {None}
-        raw.load([*(pick.column for pick in picks), *(place(raw, str(one)) for one in stamps)])
         times = _Times(raw, mapping)
-        channels = [_build(raw, pick, times) for pick in picks]
+        raw.load([*(pick.column for pick in picks), *times.needed(picks)])
+        built = [_build(raw, pick, times) for pick in picks]
+        if raw.keeps_bad:
+            built = without_bad_rows(raw, built)
+        channels = [
+            Channel(p.channel, t_s, values, from_name=p.column, unit=p.unit)
+            for p, (t_s, values) in zip(picks, built, strict=True)
+        ]
     used = {pick.column for pick in picks} | times.used
     return Log.from_channels(
         channels,
@@ -61,13 +72,20 @@ def assemble(raw: RawFile, mapping: Mapping, digest: str) -> Log:
     )
 
 
-def _build(raw: RawFile, pick: Pick, times: _Times) -> Channel:
+def _build(raw: RawFile, pick: Pick, times: _Times) -> tuple[Array, Array]:
+    """Return the stamps and the values of a channel."""
     found = column(raw, pick.column)
     values = converted(found.values, pick.factor, pick.offset)
     stamps = times.of(found, pick)
     if found.rows is not None:
+        if found.rows[-1] >= len(stamps):
+            raise LogError(
+                f"column '{brief(pick.column)}' goes on to row {found.rows[-1] + 1}, and its time "
+                f"ends in row {len(stamps)}; give its own time column, such as: "
+                f'channels.{pick.channel}.time = "..."'
+            )
         stamps = stamps[found.rows]
-    return Channel(pick.channel, stamps, values, from_name=pick.column, unit=pick.unit)
+    return stamps, values
 
 
 def converted(values: npt.NDArray[Any], factor: float, offset: float = 0.0) -> Array:
@@ -128,7 +146,20 @@ def _mapped(raw: RawFile, mapping: Mapping) -> list[Pick]:
         picks.append(
             Pick(channel, name, unit.symbol, factor, keys.sign * unit.offset, time=keys.time)
         )
-    return picks
+    return picks if any(pick.time for pick in picks) else picks + _left_to_headers(raw, picks)
+
+
+def _left_to_headers(raw: RawFile, picks: list[Pick]) -> list[Pick]:
+    """Choose position and force by their headers where a mapping does not name them."""
+    taken = {pick.column for pick in picks}
+    missing = REQUIRED.keys() - {pick.channel for pick in picks}
+    found = [one for one in read_headers(raw) if one.channel in missing and one.name not in taken]
+    count = Counter(one.channel for one in found)
+    return [
+        Pick(one.channel, one.name, one.unit.symbol, one.unit.factor, one.unit.offset)
+        for one in found
+        if count[one.channel] == 1
+    ]
 
 
 def _unit(raw: RawFile, name: str, channel: str, keys: ChannelMapping) -> FileUnit:
@@ -167,6 +198,16 @@ class _Times:
         self.shared: dict[str, Array] = {}
         self.headers: list[str] | None = None
 
+    def needed(self, picks: list[Pick]) -> list[str]:
+        """Return the time columns of channels, as far as they are known before these are read."""
+        time = self.mapping.time
+        named_ones = {pick.time or time.from_ for pick in picks} - {None}
+        needed = [place(self.raw, str(one)) for one in named_ones]
+        own = [pick.time or self.raw.listed.get(pick.column, NONE).has_stamps for pick in picks]
+        if time.from_ is None and time.rate_hz is None and not all(own):
+            needed += self._headers()[:1]
+        return needed
+
     def of(self, found: RawChannel, pick: Pick) -> Array:
         """Return the stamps of a channel: of its mapping, else its own, else the file's."""
         name = pick.time or self.mapping.time.from_
@@ -181,7 +222,7 @@ class _Times:
         if name not in self.shared:
             self.used.add(name)
             found = column(self.raw, name)
-            if found.rows is not None:
+            if found.rows is not None and not ends(found.rows):
                 raise LogError(f"column '{brief(name)}' has blank cells; every row needs its stamp")
             self.shared[name] = self._seconds(found.values, self._time_unit(name))
         return self.shared[name]
@@ -213,10 +254,13 @@ class _Times:
         seconds.setflags(write=False)
         return seconds
 
-    def _header(self) -> str:
+    def _headers(self) -> list[str]:
         if self.headers is None:
             self.headers = [one.name for one in read_headers(self.raw) if one.channel == "t_s"]
-        names = self.headers
+        return self.headers
+
+    def _header(self) -> str:
+        names = self._headers()
         if not names:
             raise _missing(self.raw, "t_s", "time", "ms")
         if len(names) > 1:

@@ -34,7 +34,7 @@ def difference(first: Channel, other: Channel) -> str:
     said = " and ".join(parts) or f"the stamps of {first.name} and {other.name} differ"
     return (
         f"{said}; these channels need one time base, and nothing is resampled silently: use "
-        f'log.resampled(rate_hz=...) or log.resampled(like="{first.name}")'
+        f'--resample-hz (log.resampled(rate_hz=...) or log.resampled(like="{first.name}"))'
     )
 
 
@@ -86,7 +86,7 @@ def resampled(
     if crossed and not across_gaps:
         raise LogError(
             f"{crossed[0]}; nothing is interpolated across gaps: cut the log with "
-            "log.between(start_s, end_s), or ask for a straight line with across_gaps=True"
+            "--between (log.between), or ask for a straight line in Python with across_gaps=True"
         )
     over = f", across {len(crossed)} gaps" if crossed else ""
     new = [

@@ -99,7 +99,8 @@ class Channel(OneLine):
         if not duration > 0.0:
             raise LogError(
                 f"column 't_s' of '{self.name}' ends {-duration:g} s before it starts; a sample "
-                "rate needs a last stamp after the first: use log.sorted_by_time()"
+                "rate needs a last stamp after the first: export it in the order of time, or "
+                "sort it in Python with log.sorted_by_time()"
             )
         return (self.rows - 1) / duration
 
@@ -113,8 +114,9 @@ class Channel(OneLine):
             raise LogError(
                 f"column 't_s', row {row}: {now:.9g} s {what} {before:.9g} s of the row before "
                 f"({stuck.size} such rows); time must increase in every row: export it with more "
-                "digits, split the log where the clock restarts, or repair it on request with "
-                "log.sorted_by_time() and log.without_repeated_stamps()"
+                "digits, cut it where the clock restarts with --between (log.between), leave out "
+                "stamps that repeat with --drop-bad-rows (log.without_repeated_stamps), or sort it "
+                "in Python with log.sorted_by_time()"
             )
 
 
@@ -137,8 +139,9 @@ def checked(name: str, values: object) -> Array:
     if bad.size:
         raise LogError(
             f"column '{name}', row {bad[0] + 1}: {array[bad[0]]:g} is not a measurement; values "
-            f"must be finite and within ±{LARGEST_VALUE:g} ({bad.size} such rows): cut them out, "
-            "or export the column again"
+            f"must be finite and within ±{LARGEST_VALUE:g} ({bad.size} such rows): leave out those "
+            "that are not finite with --drop-bad-rows (drop_bad_rows=True), or export the column "
+            "again"
         )
     array.setflags(write=False)
     return array

@@ -1,8 +1,7 @@
-"""Read a log from comma-separated values."""
+"""Read a log from a table in a text file."""
 
 from __future__ import annotations
 
-import codecs
 import csv
 import io
 import math
@@ -10,7 +9,7 @@ from array import array
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -18,14 +17,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.csv as arrow
 
 from breakaway.base.one_line import counted
-from breakaway.base.reading import open_regular
 from breakaway.base.text import brief
 from breakaway.errors import LogError
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
+from breakaway.measure.logs.footer import find_footer
+from breakaway.measure.logs.layout import Seen, Top, look
 from breakaway.measure.logs.listed import ListedChannel
 from breakaway.measure.logs.mapping import CsvMapping
 from breakaway.measure.logs.raw import (
@@ -33,10 +34,12 @@ from breakaway.measure.logs.raw import (
     RawChannel,
     RawFile,
     check_names,
+    ends,
     frozen,
     whole,
 )
-from breakaway.measure.logs.stamps import is_stamp, nanoseconds
+from breakaway.measure.logs.stamps import LOST, is_stamp, nanoseconds
+from breakaway.measure.logs.text_file import ONE_BYTE, TextFile, survey
 
 LONGEST_ROW = 4 * 2**20
 """Most characters of a row."""
@@ -56,16 +59,29 @@ BYTES_PER_CELL = 9
 BYTES_PER_TEXT = 100
 """A cell as a text with its place in a list."""
 
+MOST_SEEN_LINES, MOST_SEEN_CHARACTERS = 200, 2**18
+"""How much of a file is looked at to see its layout."""
+
+PLAIN = {
+    ".": r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\s*",
+    ",": r"\s*[+-]?(?:[0-9]+,?[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]+)?\s*",
+}
+"""Decimal mark -> a number."""
+
+BYTES_PER_CHANGE = 60
+"""A cell as a text of Arrow, with its copies while it is changed."""
+
 Found = tuple[Array | str, npt.NDArray[np.intp] | None, int]
 """Numbers of a column or why there are none, the rows that they stand in where not all do, rows."""
 
 
 @contextmanager
 def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile]:
-    """Open a text file of separated values with at most one header line.
+    """Open a text file with a table of numbers.
 
-    Arrow reads the cells. Where it finds one that is no finite number, they are read once more, row
-    by row, to say which: rows count from 1, after the header. Blank lines are left out, and told.
+    How it is laid out the mapping says, and where it says nothing, the first lines where they can
+    be read in one way. Arrow reads the cells. Where it finds one that is no finite number, they are
+    read once more, row by row, to say which: rows count from 1, after the header.
 
     Parameters
     ----------
@@ -84,18 +100,26 @@ def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile
 
     """
     raw = RawFile(path)
-    encoding = layout.encoding or told_encoding(path)
-    most_rows = _survey(path, encoding)
-    with _text(path, encoding) as text:
+    file = survey(path, layout.encoding)
+    seen = look(path, _first_lines(file, layout.skip_rows), layout)
+    layout = seen.layout
+    file = _without_footer(raw, replace(file, squeezes=layout.delimiter == " "), seen)
+    top = seen.top or _top_as_told(file, layout)
+    if top.is_ragged and file.encoding in ONE_BYTE:
+        file = replace(file, padded=(layout.delimiter.encode(), len(top.names) - 1))
+    check_names(path, len(top.names), max(map(len, top.names), default=0))
+    names, is_open = _told_apart(top.names), False
+    if seen.top is not None:
+        names, is_open = _seen_names(raw, seen.top, file, seen)
+    with file.text() as text:
         rows = _Rows(path, text, layout)
-        header, units = _header(path, rows, layout)
-        first_line = rows.lines_taken
+        rows.skip(top.lines)
         # A title in place of a header shows here: the first row has more cells.
-        first = next(_blocks(path, rows, len(header), 1), [[""] * len(header)])[0]
-    table = _Table(path, encoding, layout, header, first_line)
-    reading = _Reading(raw, table, budget, most_rows)
-    named_columns = zip(_told_apart(header), units, first, strict=True)
-    for place, (name, unit, cell) in enumerate(named_columns):
+        first = next(_blocks(path, rows, len(top.names), 1), [[""] * len(top.names)])[0]
+    table = _Table(file, layout, len(top.names), top.lines, is_open)
+    reading = _Reading(raw, table, budget)
+    shown = names[:-1] if is_open else names
+    for place, (name, unit, cell) in enumerate(zip(shown, top.units, first, strict=False)):
         reading.places[name] = place
         if is_stamp(cell):
             reading.stamped.add(name)
@@ -105,6 +129,43 @@ def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile
     yield raw
 
 
+def _first_lines(file: TextFile, skipped: int) -> list[str]:
+    """Return the lines that tell the layout, as far as they are not too long."""
+    lines, room = [], MOST_SEEN_CHARACTERS
+    with file.text() as text:
+        for number in range(skipped + MOST_SEEN_LINES):
+            line = text.readline(room + 1)
+            room -= len(line)
+            if not line or room < 0:
+                break
+            if number >= skipped:
+                lines.append(line)
+    return lines
+
+
+def _without_footer(raw: RawFile, file: TextFile, seen: Seen) -> TextFile:
+    """Leave out what stands below the table, and say so."""
+    footer = None if seen.reading is None else find_footer(file, seen.reading)
+    if footer is None:
+        return file
+    count = len(footer.rows)
+    words = f"{counted(count, 'row')} below the table left out, such as '{brief(footer.rows[0])}'"
+    raw.notice("footer", "", count, words)
+    return replace(file, end=footer.begin, lines=file.lines - footer.lines)
+
+
+def _seen_names(raw: RawFile, top: Top, file: TextFile, seen: Seen) -> tuple[list[str], bool]:
+    """Say how the file was read; return the names, and whether each row ends with a mark."""
+    notes = list(seen.notes)
+    if not file.is_told:
+        notes.append(f"the text is read as {file.encoding}")
+    raw.history = tuple(notes)
+    if not top.has_header:
+        words = "there is no header: the columns are named column_1, column_2, ..."
+        raw.notice("no_header", "", 1, words)
+    return _told_apart(top.names), top.names[-1] == ""
+
+
 @dataclass
 class _Reading:
     """Reads the columns of an open file that are wanted."""
@@ -112,7 +173,6 @@ class _Reading:
     raw: RawFile
     table: _Table
     budget: Budget
-    most_rows: int
     places: dict[str, int] = field(default_factory=dict)
     stamped: set[str] = field(default_factory=set)
     """Columns whose first cell is a time stamp in words."""
@@ -120,7 +180,7 @@ class _Reading:
 
     def read(self, wanted: list[str]) -> None:
         """Read stamps, then numbers."""
-        kept = len(wanted) * self.most_rows
+        kept = len(wanted) * self.table.file.lines
         self.budget.take("its rows", 8 * kept, 10 * kept)
         self._read_stamps([name for name in wanted if name in self.stamped])
         self._read_numbers([name for name in wanted if name not in self.stamped])
@@ -132,6 +192,8 @@ class _Reading:
         if self.zero_ns is None and starts:
             self.zero_ns = min(starts)
         for name, one in found.items():
+            if one is None and self.raw.keeps_bad and self._read_damaged([name]):
+                continue
             if one is None:
                 self.raw.give_up(name, "holds cells that are no time stamp such as the first one")
             else:
@@ -142,24 +204,59 @@ class _Reading:
             return
         columns = [self.places[name] for name in wanted]
         plain = self.table.by_arrow(columns)
+        if plain is None and self.raw.keeps_bad and self._read_damaged(wanted):
+            return
         if plain:
-            blank = self.most_rows - 1 - self.table.first_line - max(rows for *_, rows in plain)
-            if blank > 0:
-                self.raw.notice("blank", "", blank, f"{counted(blank, 'blank line')} left out")
+            self._tell_blank(max(rows for *_, rows in plain))
         else:
-            by_row = self.table.by_row(columns, self.budget, self.most_rows)
-            plain = [(one, None, 0) for one in by_row]
-        for name, (one, rows, _) in zip(wanted, plain, strict=True):
+            plain = [(one, None, 0) for one in self.table.by_row(columns, self.budget)]
+        for name, (one, rows, count) in zip(wanted, plain, strict=True):
             if isinstance(one, str):
                 self.raw.give_up(name, one)
                 continue
             if rows is not None:
-                words = f"one cell in {rows[1] - rows[0]} holds a value: read as a slower channel"
-                self.raw.notice("slower", name, len(rows), words)
-            is_large = one.size > 0 and float(np.max(np.abs(one))) > EXACT
+                self._tell_slower(name, rows, count)
+            is_large = one.size > 0 and float(np.nanmax(np.abs(one))) > EXACT
             exact = self.table.integers(self.places[name]) if is_large and rows is None else None
             values = frozen(one) if exact is None else exact
             self.raw.channels[name] = RawChannel(values, rows=rows)
+
+    def _read_damaged(self, wanted: list[str]) -> bool:
+        """Read columns of which rows will be dropped: NaN where a cell is no number or stamp."""
+        self.budget.take("its cells", 0, len(wanted) * BYTES_PER_CHANGE * self.table.file.lines)
+        found = self.table.damaged([self.places[name] for name in wanted])
+        if found is None:
+            return False
+        self.raw.dropped = self.table.ragged
+        for name, one in zip(wanted, found, strict=True):
+            if name in self.stamped:
+                stamps = nanoseconds(one, lost=True)
+                good = stamps != LOST
+                if self.zero_ns is None and good.any():
+                    self.zero_ns = int(stamps[good][0])
+                values = np.where(good, 1e-9 * (stamps - (self.zero_ns or 0)), np.nan)
+            else:
+                values = as_numbers(one, self.table.layout.decimal)
+            rows = np.flatnonzero(np.isfinite(values))
+            slower = _is_slower(rows)
+            if slower:
+                self._tell_slower(name, rows, len(values))
+            kept = frozen(values[rows] if slower else values)
+            self.raw.channels[name] = RawChannel(kept, rows=rows if slower else None)
+        return True
+
+    def _tell_blank(self, rows: int) -> None:
+        blank = self.table.file.lines - self.table.first_line - rows
+        if blank > 0 and not any(one.kind == "blank" for one in self.raw.findings):
+            self.raw.notice("blank", "", blank, f"{counted(blank, 'blank line')} left out")
+
+    def _tell_slower(self, name: str, rows: npt.NDArray[np.intp], count: int) -> None:
+        if ends(rows):
+            words = f"the last {counted(count - len(rows), 'cell')} hold nothing: it ends before"
+            self.raw.notice("ends", name, count - len(rows), words)
+        else:
+            words = f"one cell in {rows[1] - rows[0]} holds a value: read as a slower channel"
+            self.raw.notice("slower", name, len(rows), words)
 
 
 def _told_apart(header: list[str]) -> list[str]:
@@ -172,36 +269,36 @@ def _told_apart(header: list[str]) -> list[str]:
     return names
 
 
-@contextmanager
-def _text(path: Path, encoding: str) -> Iterator[io.TextIOWrapper]:
-    with open_regular(path) as file, io.TextIOWrapper(file, encoding, newline="") as text:
-        yield text
-
-
-@dataclass(frozen=True)
+@dataclass
 class _Table:
     """The rows below the header of a file, read by Arrow, or one by one."""
 
-    path: Path
-    encoding: str
+    file: TextFile
     layout: CsvMapping
-    header: list[str]
+    width: int
+    """Cells of a row."""
     first_line: int
     """How many lines are above the rows."""
+    is_open: bool
+    """Whether each row ends with a mark, behind which there is nothing."""
+    ragged: int = 0
+    """Rows of more or fewer cells that were left out."""
 
     def by_arrow(self, columns: list[int]) -> list[Found] | None:
         """Return the numbers of columns, in which rows they stand, and how many rows there are.
 
         None where a cell or a row is not as it must be. Blank cells are, in a column of a slower
-        channel: one that has a value in every so many-th row.
+        channel, one that has a value in every so many-th row, and below the end of a shorter one.
         """
         table = self._read(columns, pa.float64())
         if table is None:
             return None
         found: list[Found] = []
-        for column in table.columns:
+        for _ in columns:
+            column = table.column(0)
+            table = table.remove_column(0)
             rows = np.flatnonzero(column.is_valid().to_numpy()) if column.null_count else None
-            if rows is not None and not _is_slower(rows):
+            if rows is not None and not (_is_slower(rows) or ends(rows)):
                 return None
             values = _numbers(column.drop_null() if rows is not None else column)
             if not np.isfinite(values).all():
@@ -212,45 +309,62 @@ class _Table:
     def stamps(self, column: int) -> npt.NDArray[np.int64] | None:
         """Return a column of time stamps in words, in ns; None where one is none."""
         table = self._read([column], pa.string())
-        return None if table is None else nanoseconds(table.column(0))
+        found = None if table is None else nanoseconds(table.column(0))
+        return None if found is None or (found == LOST).any() else found
 
     def integers(self, column: int) -> npt.NDArray[np.int64] | None:
         """Return a column of whole numbers as they are; None where it has others."""
         table = self._read([column], pa.int64())
-        return None if table is None else whole(table.column(0).to_numpy())
+        return None if table is None else whole(table.column(0).drop_null().to_numpy())
 
-    def _read(self, columns: list[int], kind: Any) -> Any:  # noqa: ANN401 - pyarrow has no types
-        names = [str(place) for place in range(len(self.header))]
-        chosen = [names[place] for place in columns]
+    def damaged(self, columns: list[int]) -> list[Any] | None:
+        """Return the cells of columns as texts; rows of more or fewer cells are left out."""
+        self.ragged = 0
+
+        def leave_out(_: Any) -> str:  # noqa: ANN401 - pyarrow has no types
+            self.ragged += 1
+            return "skip"
+
+        table = self._read(columns, pa.string(), leave_out)
+        return None if table is None else table.columns
+
+    def _read(self, columns: list[int], kind: Any, leave_out: Any = None) -> Any:  # noqa: ANN401
+        names = [str(place) for place in range(self.width)]
+        chosen = [names[place] for place in dict.fromkeys(columns)]
+        kinds = dict.fromkeys(chosen, kind) | ({names[-1]: pa.null()} if self.is_open else {})
         options = {
             "read_options": arrow.ReadOptions(
-                column_names=names, skip_rows=self.first_line, encoding=self.encoding
+                column_names=names, skip_rows=self.first_line, encoding=self.file.encoding
             ),
-            "parse_options": arrow.ParseOptions(delimiter=self.layout.delimiter),
+            "parse_options": arrow.ParseOptions(
+                delimiter=self.layout.delimiter, invalid_row_handler=leave_out
+            ),
             "convert_options": arrow.ConvertOptions(
-                include_columns=chosen,
-                column_types=dict.fromkeys(chosen, kind),
-                null_values=[""],
+                include_columns=list(kinds),
+                column_types=kinds,
+                null_values=["", " "],
+                strings_can_be_null=False,
                 decimal_point=self.layout.decimal,
             ),
         }
         try:
-            with open_regular(self.path) as file:
-                return arrow.read_csv(file, **options)
+            with self.file.binary() as stream:
+                return arrow.read_csv(stream, **options).select(chosen)
         except pa.ArrowInvalid:
             return None
 
-    def by_row(self, columns: list[int], budget: Budget, most_rows: int) -> list[Array | str]:
+    def by_row(self, columns: list[int], budget: Budget) -> list[Array | str]:
         """Return the numbers of columns, or why one cannot be read."""
-        count = len(self.header)
-        at_once = max(ROWS_AT_ONCE, CELLS_AT_ONCE // max(count, 1))
-        passing = BYTES_PER_TEXT * count * min(at_once, most_rows)
-        budget.take("its cells", BYTES_PER_CELL * len(columns) * most_rows, passing)
+        lines = self.file.lines
+        at_once = max(ROWS_AT_ONCE, CELLS_AT_ONCE // max(self.width, 1))
+        passing = BYTES_PER_TEXT * self.width * min(at_once, lines)
+        budget.take("its cells", BYTES_PER_CELL * len(columns) * lines, passing)
         found = [_Column(self.layout.decimal) for _ in columns]
-        with _text(self.path, self.encoding) as text:
-            rows = _Rows(self.path, text, self.layout)
+        path = self.file.path
+        with self.file.text() as text:
+            rows = _Rows(path, text, self.layout)
             rows.skip(self.first_line)
-            for block in _blocks(self.path, rows, count, at_once):
+            for block in _blocks(path, rows, self.width, at_once, self.is_open):
                 plain = all(map(_is_plain, map("".join, block)))
                 by_column = list(zip(*block, strict=True))
                 for column, place in zip(found, columns, strict=True):
@@ -274,36 +388,22 @@ def _numbers(column: Any) -> Array:  # noqa: ANN401 - pyarrow has no types
     return values
 
 
-def told_encoding(path: Path) -> str:
-    """Return the encoding that the first bytes of a file tell for certain, else UTF-8."""
-    with open_regular(path) as file:
-        head = file.read(4)
-    if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return "utf-16"
-    return "utf-8-sig" if head.startswith(codecs.BOM_UTF8) else "utf-8"
+def as_numbers(column: Any, decimal: str) -> Array:  # noqa: ANN401 - pyarrow has no types
+    """Return texts as numbers, and NaN for what is none.
 
+    Examples
+    --------
+    >>> as_numbers(pa.chunked_array([["1.5", " -2e3 ", "1_0", "OVL", ""]]), ".").tolist()
+    [1.5, -2000.0, nan, nan, nan]
 
-def _survey(path: Path, encoding: str) -> int:
-    """Return how many lines there are at most; refuse what is not of the encoding."""
-    decoder, block, marks, done = codecs.getincrementaldecoder(encoding)(), b"", 1, 0
-    plain = encoding in ("utf-8", "utf-8-sig", "cp1252", "latin-1")
-    with open_regular(path) as file:
-        while not done or block:
-            block = file.read(2**20)
-            pending = len(decoder.getstate()[0])
-            try:
-                text = decoder.decode(block, final=not block)
-            except UnicodeDecodeError as error:
-                raise LogError(
-                    f"{path.name}: byte {done - pending + error.start + 1} is not "
-                    f"{encoding.removesuffix('-sig').upper()} text; a CSV log is read as UTF-8 "
-                    "unless a mapping says otherwise: save it so, write "
-                    'csv = { encoding = "cp1252" } for one from Windows, or name another format'
-                ) from None
-            lines = block if plain else text.encode()
-            marks += lines.count(b"\n") + lines.count(b"\r") - lines.count(b"\r\n")
-            done += len(block)
-    return marks
+    """
+    is_number = pc.match_substring_regex(column, rf"^(?:{PLAIN[decimal]})$")
+    text = pc.replace_substring_regex(column, r"^\s*\+?(.*?)\s*$", r"\1")
+    text = pc.replace_substring(text, ",", ".") if decimal == "," else text
+    numbers = pc.if_else(is_number, text, None).cast(pa.float64())
+    values: Array = numbers.to_numpy().astype(np.float64)
+    values[~np.isfinite(values)] = np.nan
+    return values
 
 
 class _Rows:
@@ -349,6 +449,14 @@ class _Rows:
                 f"{self.path.name}: is not comma-separated text ({error}); export it as CSV with "
                 "one header line"
             ) from None
+
+
+def _top_as_told(file: TextFile, layout: CsvMapping) -> Top:
+    """Return what stands above the rows, as the mapping says, or one line of names."""
+    with file.text() as text:
+        rows = _Rows(file.path, text, layout)
+        names, units = _header(file.path, rows, layout)
+        return Top(rows.lines_taken, names, units)
 
 
 def _header(path: Path, rows: _Rows, layout: CsvMapping) -> tuple[list[str], list[str]]:
@@ -401,7 +509,9 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _blocks(path: Path, rows: _Rows, count: int, at_once: int) -> Iterator[list[list[str]]]:
+def _blocks(
+    path: Path, rows: _Rows, count: int, at_once: int, is_open: bool = False
+) -> Iterator[list[list[str]]]:
     """Give the rows in blocks, each row with as many cells as the header."""
     found, done = iter(rows), 0
     while block := list(islice(found, at_once)):
@@ -409,8 +519,14 @@ def _blocks(path: Path, rows: _Rows, count: int, at_once: int) -> Iterator[list[
             if len(cells) != count:
                 raise LogError(
                     f"{path.name}: row {row}: {len(cells)} cells where the header has {count}; "
-                    "every row must have as many as the header: repair the row, or export again; "
-                    "csv.skip_rows in a mapping leaves out lines above the header"
+                    "every row must have as many as the header: repair the row, or drop such rows "
+                    "with --drop-bad-rows (drop_bad_rows=True); csv.skip_rows in a mapping leaves "
+                    "out lines above the header"
+                )
+            if is_open and cells[-1]:
+                raise LogError(
+                    f"{path.name}: row {row}: the last cell holds {brief(cells[-1])!r}, and no "
+                    "column of the header stands above it: repair the row, or export again"
                 )
         done += len(block)
         yield block
@@ -465,7 +581,8 @@ class _Column:
         thousands = f" (or {other!r} stands between thousands)" if other in cell else ""
         return (
             f"{cell[:40]!r} is {reason}{thousands}; it must be a finite number such as "
-            f"-1{self.decimal}5e-3: cut the row out, or export the log again"
+            f"-1{self.decimal}5e-3: drop such rows with --drop-bad-rows (drop_bad_rows=True), or "
+            "export the log again"
         )
 
 

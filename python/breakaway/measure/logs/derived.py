@@ -221,6 +221,5 @@ def check_even(log: Log) -> None:
             f"{log.name}: column 't_s', row {worst + 2}: the step of {steps[worst]:.6g} s deviates "
             f"by {100 * deviation[worst]:.3g} % from the median step of {median:.6g} s; at most "
             f"{100 * SPACING_TOLERANCE:g} % is allowed, and nothing is resampled silently: cut "
-            "the log at its gaps with log.between(start_s, end_s), or use "
-            "log.resampled(rate_hz=...)"
+            "the log at its gaps with --between (log.between), or use --resample-hz (log.resampled)"
         )

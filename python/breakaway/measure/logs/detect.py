@@ -15,11 +15,15 @@ MAGIC = {
     b"MDF     ": "mdf",
     b"UnFinMF ": "mdf",
     b"\x89MCAP0\r\n": "mcap",
+    b"LabVIEW Measurem": "csv",
 }
 
 SUFFIXES = {
     ".csv": "csv",
     ".txt": "csv",
+    ".tsv": "csv",
+    ".lvm": "csv",
+    ".asc": "csv",
     ".parquet": "parquet",
     ".pq": "parquet",
     ".mat": "mat",
@@ -52,6 +56,6 @@ def detect(path: Path) -> str:
     if found is None:
         raise LogError(
             f"{path.name}: neither its first bytes nor its suffix '{path.suffix}' tell the format; "
-            f"name it with format=, one of {', '.join(dict.fromkeys(SUFFIXES.values()))}"
+            f"name it with --format (format=), one of {', '.join(dict.fromkeys(SUFFIXES.values()))}"
         )
     return found

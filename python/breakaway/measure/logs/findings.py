@@ -16,6 +16,10 @@ cut_off            the recording ends within a piece that was not finished
 invalid            samples that the file marks as invalid are left out
 blank              blank lines are left out
 slower             a column has a value in every so many-th row only
+ends               a column has no values from some row on
+no_header          a table has no header, and its columns are named by number
+footer             rows at the end that are none of the table, such as statistics, are left out
+dropped            bad rows are left out because that was asked for
 saturation         at least 5 samples in a row equal the largest or smallest value, and steps of
                    more than 2 quanta lead there and away
 =================  ===============================================================================
@@ -51,6 +55,10 @@ Kind = Literal[
     "invalid",
     "blank",
     "slower",
+    "ends",
+    "no_header",
+    "footer",
+    "dropped",
 ]
 
 GAP = 2.5

@@ -295,7 +295,7 @@ class Log(OneLine):
             f"{self.name}: there is no channel '{brief(name)}'; present are "
             f"{', '.join(self.channels)}{f' (columns not read: {ignored})' if ignored else ''}; "
             f"name its column in a mapping, or take another channel for it with "
-            f'log.using({brief(name)}="{other}")'
+            f"--use {brief(name)}={other} (log.using)"
         )
 
     def check_increasing(self) -> None:

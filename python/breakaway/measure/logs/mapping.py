@@ -52,10 +52,10 @@ class TimeMapping(Model):
 
 
 class CsvMapping(Model):
-    """How a CSV file is laid out."""
+    """How a text file is laid out; what is not given is seen from the file where it is certain."""
 
     delimiter: Annotated[str, Field(min_length=1, max_length=1)] = ","
-    """The mark between cells."""
+    """The mark between cells; a blank stands for a run of blanks."""
 
     decimal: Literal[".", ","] = "."
     """The decimal mark."""

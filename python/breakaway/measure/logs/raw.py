@@ -48,7 +48,7 @@ class RawChannel:
     values: npt.NDArray[Any]
     t_s: Array | None = None
     rows: npt.NDArray[np.intp] | None = None
-    """The rows that the values stand in, where the channel is slower than its table."""
+    """The rows that the values stand in, where the channel is slower than its table, or ends."""
 
 
 @dataclass(eq=False)
@@ -67,6 +67,10 @@ class RawFile:
     findings: list[Finding] = field(default_factory=list)
     read: Callable[[list[str]], None] = lambda _: None
     """Reads channels that are listed, by `add` or `refuse` for each."""
+    keeps_bad: bool = False
+    """Whether NaN stands for what is no number, because bad rows will be dropped."""
+    dropped: int = 0
+    """Bad rows that the reader has dropped itself."""
 
     @property
     def names(self) -> list[str]:
@@ -144,6 +148,11 @@ class RawFile:
 
         """
         check_names(self.path, len(self.listed) + len(self.unreadable), len(name))
+
+
+def ends(rows: npt.NDArray[np.intp]) -> bool:
+    """Whether values stand in all rows up to some."""
+    return len(rows) > 0 and int(rows[-1]) == len(rows) - 1
 
 
 def no_vector(kind: np.dtype[Any], shape: tuple[int, ...]) -> str:

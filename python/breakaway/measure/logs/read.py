@@ -45,6 +45,7 @@ def read_log(
     format: str | None = None,
     *,
     memory_bytes: float | None = None,
+    drop_bad_rows: bool = False,
 ) -> Log:
     r"""Read a measured log.
 
@@ -71,7 +72,9 @@ def read_log(
 
     and optionally ``format = "tdms"``, ``time = "..."`` in a channel with a time column of its
     own, ``rate_hz`` or ``scale`` in ``[time]`` in place of a unit, and a table ``[csv]`` with
-    ``delimiter``, ``decimal``, ``skip_rows``, ``header``, ``units_row``, ``encoding``.
+    ``delimiter``, ``decimal``, ``skip_rows``, ``header``, ``units_row``, ``encoding``. What is
+    missing there is seen from the file where it can be read in one way only, and told in
+    ``history``.
 
     Parameters
     ----------
@@ -86,6 +89,9 @@ def read_log(
     memory_bytes : float, optional
         Most memory that the content of the file may take; by default half of what is free. The
         log takes up to as much again.
+    drop_bad_rows : bool
+        Whether to leave out rows with a cell that is no finite number, rows of a text file with
+        more or fewer cells, and rows whose stamp repeats the one before. A finding counts them.
 
     Returns
     -------
@@ -129,6 +135,7 @@ def read_log(
         with open_log(path, kind, rules, budget) as raw:
             if kind == "emps" or (kind == "mat" and not rules.channels and is_emps(raw)):
                 rules, origin = emps_layout(raw), ""
+            raw.keeps_bad = drop_bad_rows
             log = assemble(raw, rules, digest)
     return log.noted(f"channels as {origin} says") if origin else log
 

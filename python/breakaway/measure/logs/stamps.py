@@ -6,7 +6,6 @@ import re
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.compute as pc
 
@@ -17,6 +16,9 @@ FORMS = (
     re.compile(rf"^\s*{TIME}\s*$"),
 )
 """ISO 8601, of no zone or of UTC; day.month.year as in German; a time of day."""
+
+LOST = np.iinfo(np.int64).min
+"""Stands for no stamp."""
 
 CLEANED = (
     (r"^\s*(.*?)Z?\s*$", r"\1"),
@@ -41,8 +43,10 @@ def is_stamp(cell: str) -> bool:
     return any(form.match(cell) for form in FORMS)
 
 
-def nanoseconds(column: Any) -> npt.NDArray[np.int64] | None:  # noqa: ANN401 - pyarrow has no types
+def nanoseconds(column: Any, *, lost: bool = False) -> Any:  # noqa: ANN401 - pyarrow has no types
     """Return texts as ns, of the first day of 1970 where there is no date; None where one is none.
+
+    With ``lost``, what is no stamp is `LOST`.
 
     Examples
     --------
@@ -51,13 +55,15 @@ def nanoseconds(column: Any) -> npt.NDArray[np.int64] | None:  # noqa: ANN401 - 
 
     """
     cleaned = column
+    if lost:
+        forms = "|".join(form.pattern for form in FORMS)
+        cleaned = pc.if_else(pc.match_substring_regex(column, forms), column, None)
     for pattern, replacement in CLEANED:
         cleaned = pc.replace_substring_regex(cleaned, pattern, replacement)
     try:
         stamps = cleaned.cast(pa.timestamp("ns"))
     except pa.ArrowInvalid:
         return None
-    if stamps.null_count:
+    if stamps.null_count and not lost:
         return None
-    found: npt.NDArray[np.int64] = stamps.cast(pa.int64()).to_numpy()
-    return found
+    return pc.fill_null(stamps.cast(pa.int64()), LOST).to_numpy()

@@ -158,6 +158,19 @@ must be one of N, mN, daN, uN, kN, MN, lbf, kgf
     return found
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a known unit.
+
+    Examples
+    --------
+    >>> is_unit("kN"), is_unit("Millimeters"), is_unit("kn"), is_unit("Force")
+    (True, True, False, False)
+
+    """
+    symbol = plain(_WORDS.get(text.lower(), text))
+    return any(plain(unit.symbol) == symbol for unit in _UNITS)
+
+
 def stated(symbol: str, channel: str) -> FileUnit | None:
     """Return the unit that a header or a file states for a channel, or None.
 
