@@ -11,12 +11,11 @@ from breakaway._core import __version__
 from breakaway.base.arguments import check_arguments
 from breakaway.errors import LogError
 from breakaway.measure.identification.events import BreakawayReport, find_breakaway_events
-from breakaway.measure.identification.joint_file import (
-    DRAWS,
+from breakaway.measure.identification.joint_file import DRAWS, JointFile
+from breakaway.measure.identification.joint_tables import (
     Assumed,
     Draws,
     Joint,
-    JointFile,
     Part,
     Provenance,
     PullFigures,
