@@ -108,9 +108,9 @@ def open_csv(path: Path, budget: Budget, layout: CsvMapping) -> Iterator[RawFile
     if top.is_ragged and file.encoding in ONE_BYTE:
         file = replace(file, padded=(layout.delimiter.encode(), len(top.names) - 1))
     check_names(path, len(top.names), max(map(len, top.names), default=0))
-    names, is_open = _told_apart(top.names), False
-    if seen.top is not None:
-        names, is_open = _seen_names(raw, seen.top, file, seen)
+    names = _told_apart(top.names)
+    is_open = seen.top is not None and names[-1] == ""
+    _tell_layout(raw, seen, file)
     with file.text() as text:
         rows = _Rows(path, text, layout)
         rows.skip(top.lines)
@@ -154,16 +154,14 @@ def _without_footer(raw: RawFile, file: TextFile, seen: Seen) -> TextFile:
     return replace(file, end=footer.begin, lines=file.lines - footer.lines)
 
 
-def _seen_names(raw: RawFile, top: Top, file: TextFile, seen: Seen) -> tuple[list[str], bool]:
-    """Say how the file was read; return the names, and whether each row ends with a mark."""
-    notes = list(seen.notes)
+def _tell_layout(raw: RawFile, seen: Seen, file: TextFile) -> None:
+    """Say how the file is read beyond what its mapping says."""
+    raw.history = tuple(seen.notes)
     if not file.is_told:
-        notes.append(f"the text is read as {file.encoding}")
-    raw.history = tuple(notes)
-    if not top.has_header:
+        raw.history += (f"the text is read as {file.encoding}",)
+    if seen.top is not None and not seen.top.has_header:
         words = "there is no header: the columns are named column_1, column_2, ..."
         raw.notice("no_header", "", 1, words)
-    return _told_apart(top.names), top.names[-1] == ""
 
 
 @dataclass
