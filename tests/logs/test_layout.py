@@ -275,3 +275,9 @@ def test_any_rows_are_read_or_refused(table: list[list[str]], mark: str, around:
             with contextlib.suppress(LogError):
                 log = read_log(path, drop_bad_rows=drops)
                 assert all(np.isfinite(one.values).all() for one in log.channels.values())
+
+
+def test_what_is_seen_is_told_also_where_a_mapping_says_what_stands_above(write: Write) -> None:
+    path = write("µ-Labor\n" + table(";", ","), "cp1252")
+    log = read_log(path, {"csv": {"skip_rows": 1}})
+    check(log, "separated by semicolons", "the text is read as cp1252")

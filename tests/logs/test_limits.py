@@ -21,7 +21,7 @@ from breakaway.base.free_memory import free_memory_bytes, group_bytes
 from breakaway.errors import LogError
 from breakaway.measure.logs import read_log
 from breakaway.measure.logs.budget import Budget
-from breakaway.measure.logs.csv import LONGEST_ROW
+from breakaway.measure.logs.csv_rows import LONGEST_ROW
 from breakaway.measure.logs.digest import digested
 from breakaway.measure.logs.raw import LONGEST_NAME, MOST_NAMES
 
