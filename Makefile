@@ -15,7 +15,7 @@ CARGO_TEST := cargo test --quiet --locked --workspace --exclude breakaway-python
 .PHONY: help demo test test-build test-firmware check lint bench peers fuzz docs lock clean
 
 help:
-	@echo "make demo    set up, then reproduce the paper into out/reproduction"
+	@echo "make demo    set up, reproduce the paper into out/reproduction, write an advice into out/advice"
 	@echo "make test    set up, then run every test"
 	@echo "make test-build   compile the tests in Rust, and run none"
 	@echo "make check   what takes less than a minute: static checks, and tests that are not slow"
@@ -29,6 +29,8 @@ help:
 
 demo: $(VENV)/.built
 	$(BIN)/breakaway reproduce --out out/reproduction
+	$(BIN)/breakaway events examples/10_from_pull_to_report/part_1.csv --mass-kg 2 --out out/joint.toml
+	$(BIN)/breakaway advise out/joint.toml --limits examples/10_from_pull_to_report/limits.toml --budget-s 20 --out out/advice
 
 test: $(VENV)/.built $(VENV)/.development
 	$(CARGO_TEST)

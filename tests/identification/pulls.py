@@ -8,7 +8,7 @@ from typing import Any
 from breakaway.measure.logs import Log
 
 _EXAMPLE: dict[str, Any] = run_path(
-    str(Path(__file__).parents[2] / "examples/12_from_a_pull/pulls.py")
+    str(Path(__file__).parents[2] / "examples/10_from_pull_to_report/pulls.py")
 )
 pulled: Callable[..., Log] = _EXAMPLE["pulled"]
 written: Callable[[Log, Path], Path] = _EXAMPLE["written"]

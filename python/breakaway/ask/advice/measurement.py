@@ -25,6 +25,8 @@ from breakaway.model.scenario.laws import stiffness_of
 
 Array = NDArray[np.float64]
 
+UNSURE = 0.05
+"""Relative standard deviation of the breakaway force below which it is known well enough."""
 RISK = 0.02
 """Share of parts that may break loose in the measurement."""
 MARGIN = 0.9
@@ -60,9 +62,13 @@ class Measurement:
 
 
 def design_measurement(tried: Tried, bounds: Bounds) -> Measurement | None:
-    """Choose the reference that tells most of F_s; None where the rig reads no position."""
+    """Choose the reference that tells most of F_s.
+
+    None where the rig reads no position, or F_s is known to 5 % already.
+    """
     noise_m = bounds.rig.sensors.position.noise_rms_m
-    if "position" not in bounds.rig.reads or noise_m <= 0.0:
+    before = float(np.std(np.log(tried.quantities["stiction_n"])))
+    if "position" not in bounds.rig.reads or noise_m <= 0.0 or before < UNSURE:
         return None
     stiction_n, stiffness = tried.quantities["stiction_n"], stiffness_of(tried.quantities)
     allowed = np.inf if bounds.limits is None else bounds.limits.force_max_n
@@ -80,7 +86,7 @@ def design_measurement(tried: Tried, bounds: Bounds) -> Measurement | None:
         t_s=t_s,
         force_n=references[best],
         peak_n=peak_n,
-        before=float(np.std(np.log(stiction_n))),
+        before=before,
         after=errors.pop(best),
         others=errors,
     )

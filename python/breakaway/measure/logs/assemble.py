@@ -320,8 +320,10 @@ def present(raw: RawFile, name: str) -> str:
 
 
 def _missing(raw: RawFile, channel: str, key: str, unit: str) -> LogError:
+    mapping = raw.path.with_suffix(".toml").name
     return LogError(
         f"column '{channel}' is missing; {present(raw, channel)}; name the column so, or write "
-        f"its name and unit into {raw.path.with_suffix('.toml').name}, such as: "
-        f'{key} = {{ from = "...", unit = "{unit}" }}'
+        f"its name and unit into {mapping}, such as: "
+        f'{key} = {{ from = "...", unit = "{unit}" }}; breakaway logs {raw.path.name} '
+        f"--write-mapping {mapping} guesses one"
     )
