@@ -47,3 +47,22 @@ def test_what_is_no_log_is_told(call: Call, tmp_path: Path) -> None:
     failed = call("logs", tmp_path / "none.csv")
     assert (failed.exit_code, failed.stdout) == (2, "")
     assert "there is no such file" in failed.stderr
+
+
+def test_a_picture_is_drawn_before_anything_is_fitted(call: Call, tmp_path: Path) -> None:
+    path = tmp_path / "gap.csv"
+    times = [*(k / 100 for k in range(40)), *(1.0 + k / 100 for k in range(40))]
+    path.write_text("t_s,position_m,force_n\n" + "".join(f"{t},{t},{2 * t}\n" for t in times))
+    shown = call("logs", path, "--plot", tmp_path / "log.svg")
+    assert shown.exit_code == 0, shown.stderr
+    assert "- t_s: 1 gap" in shown.stdout and f"wrote {tmp_path / 'log.svg'}" in shown.stdout
+    assert (tmp_path / "log.svg").read_text().startswith("<?xml")
+    cut = call("logs", path, "--plot", tmp_path / "cut.png", "--between", 0, 0.3, "--json")
+    assert not any("gap" in one for one in json.loads(cut.stdout)["odd"])
+    assert (tmp_path / "cut.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_picture_of_an_unknown_kind_is_refused(call: Call, tmp_path: Path) -> None:
+    refused = call("logs", rig_csv(tmp_path), "--plot", tmp_path / "log.bmp")
+    assert refused.exit_code == 3 and "'log.bmp' does not end in .png" in refused.stderr
+    assert not (tmp_path / "log.bmp").exists()

@@ -167,6 +167,7 @@ add_command(
     logs,
     "breakaway logs motor.tdms",
     "breakaway logs motor.csv --write-mapping motor.toml",
+    "breakaway logs motor.csv --plot motor.png",
     "breakaway logs motor.mf4 --json | jq .channels",
 )
 add_command(
