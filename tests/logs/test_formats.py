@@ -114,7 +114,7 @@ def test_matlab_structure(tmp_path: Path, packed: bool) -> None:
     log = read_log(path, {"channels": channels})
     np.testing.assert_allclose(log.position_m, 2.0 * T_S)
     np.testing.assert_array_equal(log.force_n, 1e3 * np.arange(50))
-    assert set(log.ignored_columns) == {"s.note", "s.inner", "cells"}
+    assert set(log.ignored_columns) == {"s.note", "s.inner.x", "cells"}
     channels["force_n"]["from"] = "note"
     with pytest.raises(LogError, match=r"column 's\.note': is of class char"):
         read_log(path, {"channels": channels})

@@ -144,7 +144,8 @@ def element(kind: int, content: bytes) -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("number", "words"), [(17, "is of class object"), (16, "is of class function handle")]
+    ("number", "words"),
+    [(17, "is an object of MATLAB, such as a timeseries"), (16, "is of class function handle")],
 )
 def test_matlab_5_objects_and_handles(tmp_path: Path, number: int, words: str) -> None:
     path = tmp_path / "motor.mat"

@@ -1,27 +1,17 @@
 """Text exports are read by the mappings that their sections of docs/recorders.md print."""
 
-import re
-import tomllib
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from tests.logs.recorders import printed_mapping
 
 from breakaway.measure.logs import Log, list_channels, read_log
 
-DOCS = Path(__file__).parents[2] / "docs" / "recorders.md"
 ROWS = 40
 T_S = np.arange(ROWS) / 50.0
 POSITION_MM = np.arange(ROWS) / 8.0
 FORCE = 1.25 - np.arange(ROWS) / 4.0
-
-
-def mapping(heading: str) -> dict[str, Any]:
-    """Return the mapping that a section prints."""
-    section = DOCS.read_text(encoding="utf-8").split(f"\n## {heading}\n")[1].split("\n## ")[0]
-    (text,) = re.findall(r"```toml\n(.*?)```", section, re.DOTALL)
-    return tomllib.loads(text)
 
 
 def lines(mark: str, decimal: str, *columns: np.ndarray, quote: str = "") -> str:
@@ -51,7 +41,7 @@ def test_testxpert(tmp_path: Path, mark: str, decimal: str) -> None:
     text = "".join(mark.join(row) + "\r\n" for row in top)
     text += lines(mark, decimal, T_S, FORCE, POSITION_MM, POSITION_MM)
     path.write_bytes(text.encode("cp1252"))
-    log = read_log(path, mapping("Zwick/Roell testXpert"))
+    log = read_log(path, printed_mapping("Zwick/Roell testXpert"))
     check(log)
     assert "5 lines above the header left out" in log.history
     assert "the text is read as cp1252" in log.history
@@ -62,7 +52,7 @@ def test_testxpert_with_three_columns(tmp_path: Path) -> None:
     top = '"Vorkraft"\t2\t"MPa"\r\n"Prüfzeit"\t"Standardkraft"\t"Traversenweg absolut"\r\n'
     text = f'{top}"s"\t"kN"\t"mm"\r\n' + lines("\t", ",", T_S, FORCE, POSITION_MM)
     path.write_bytes(text.encode("cp1252"))
-    check(read_log(path, mapping("Zwick/Roell testXpert")), newton=1e3)
+    check(read_log(path, printed_mapping("Zwick/Roell testXpert")), newton=1e3)
 
 
 @pytest.mark.parametrize("decimal", [".", ","])
@@ -78,14 +68,14 @@ def test_bluehill(tmp_path: Path, above: str, decimal: str) -> None:
     path = tmp_path / "Specimen_RawData_1.csv"
     text = f"{above}Time,Extension,Load,Cycle count\r\n(s),(mm),(kN),\r\n"
     path.write_text(text + lines(",", decimal, T_S, POSITION_MM, FORCE, 0 * T_S, quote='"'))
-    check(read_log(path, mapping("Instron Bluehill")), newton=1e3)
+    check(read_log(path, printed_mapping("Instron Bluehill")), newton=1e3)
 
 
 def test_dewesoft(tmp_path: Path) -> None:
     path = tmp_path / "pull_3.csv"
     text = "File name;pull_3.dxd\nSample rate;50\n\nTime;Force;Position\ns;kN;mm\n"
     path.write_text(text + lines(";", ",", T_S, FORCE, POSITION_MM))
-    check(read_log(path, mapping("DEWESoft")), newton=1e3)
+    check(read_log(path, printed_mapping("DEWESoft")), newton=1e3)
 
 
 def scope(mark: str, decimal: str) -> str:
@@ -117,7 +107,7 @@ def test_twincat_scope(tmp_path: Path, mark: str, decimal: str) -> None:
     path.write_text(scope(mark, decimal))
     listed = {one.name: one.unit for one in list_channels(path).channels}
     assert listed == {"Time#1": "ms", "Force": "N", "Time#2": "ms", "Position": "mm"}
-    log = read_log(path, mapping("TwinCAT Scope"))
+    log = read_log(path, printed_mapping("TwinCAT Scope"))
     force, position = log.channels["force_n"], log.channels["position_m"]
     np.testing.assert_allclose(force.t_s, T_S, atol=1e-12)
     np.testing.assert_allclose(force.values, FORCE)
@@ -132,7 +122,7 @@ def test_twincat_scope_with_one_time_column(tmp_path: Path) -> None:
     keys = ["SampleTime[ms];20;20", "Unit;N (Force);mm (Length)", "Unit Offset;0;0"]
     top = "Name;pull_3;\n\n" + "\n".join(["Name;Force;Position", *keys]) + "\n\n"
     path.write_text(top + lines(";", ".", 1e3 * T_S, FORCE, POSITION_MM))
-    channels = mapping("TwinCAT Scope")["channels"]
+    channels = printed_mapping("TwinCAT Scope")["channels"]
     for one in channels.values():
         del one["time"]
     check(read_log(path, {"channels": channels}))
@@ -151,14 +141,14 @@ LVM = (
 def test_labview_with_x_values(tmp_path: Path) -> None:
     path = tmp_path / "pull_3.lvm"
     path.write_text(LVM + lines("\t", ",", T_S, FORCE, POSITION_MM), newline="")
-    check(read_log(path, mapping("LabVIEW")))
+    check(read_log(path, printed_mapping("LabVIEW")))
 
 
 def test_labview_without_x_values(tmp_path: Path) -> None:
     path = tmp_path / "pull_3.lvm"
     rows = lines("\t", ",", FORCE, POSITION_MM)
     path.write_text(LVM + "".join(f"\t{row}\r\n" for row in rows.splitlines()), newline="")
-    check(read_log(path, mapping("LabVIEW") | {"time": {"rate_hz": 50.0}}))
+    check(read_log(path, printed_mapping("LabVIEW") | {"time": {"rate_hz": 50.0}}))
 
 
 def test_labview_with_a_second_recording_is_refused(tmp_path: Path) -> None:
@@ -166,4 +156,4 @@ def test_labview_with_a_second_recording_is_refused(tmp_path: Path) -> None:
     rows = lines("\t", ",", T_S, FORCE, POSITION_MM)
     path.write_text(LVM + rows + "\r\n" + LVM.partition("\r\n\r\n")[2] + rows, newline="")
     with pytest.raises(Exception, match="row 41: 2 cells where the header has 3"):
-        read_log(path, mapping("LabVIEW"))
+        read_log(path, printed_mapping("LabVIEW"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from breakaway.measure.logs.listed import ListedChannel
 from breakaway.measure.logs.raw import (
     DEFLATE_RATIO,
     RawFile,
+    channel_side,
     check_claim,
     guarded,
     need,
@@ -59,6 +60,8 @@ class _Array:
     offset: float = 0.0
     missing: tuple[float, ...] = ()
     """What stands for no value, among the packed numbers."""
+    part: tuple[slice | int, ...] = ()
+    """Which part of the array it is; empty for all of it."""
 
 
 @guarded("an HDF5 file")
@@ -126,8 +129,10 @@ def _list(
     fields = dataset.dtype.fields
     if fields is None:
         unit = _attribute(h5py, dataset, "unit") or _attribute(h5py, dataset, "units")
-        raw.list(ListedChannel(name, unit, str(dataset.dtype), dataset.size))
-        arrays[name] = _packed(h5py, dataset)
+        packed, length = _packed(h5py, dataset), max(dataset.shape, default=1)
+        for full, part in _parts(name, dataset):
+            raw.list(ListedChannel(full, unit, str(dataset.dtype), length))
+            arrays[full] = replace(packed, part=part)
         return
     for member, (kind, *_) in fields.items():
         full = name + separator + member
@@ -136,6 +141,18 @@ def _list(
         else:
             raw.list(ListedChannel(full, "", str(kind), dataset.size))
             arrays[full] = _Array(dataset, member)
+
+
+def _parts(name: str, dataset: Any) -> list[tuple[str, tuple[slice | int, ...]]]:  # noqa: ANN401
+    """Give the channels of an array with their names: itself, or those of a matrix."""
+    side = channel_side(dataset.dtype, dataset.shape)
+    if side is None:
+        return [(name, ())]
+    whole = slice(None)
+    return [
+        (side.name(name, place), (whole, place) if side.axis else (place, whole))
+        for place in range(dataset.shape[side.axis])
+    ]
 
 
 def _packed(h5py: Any, dataset: Any) -> _Array:  # noqa: ANN401
@@ -226,6 +243,8 @@ def _no_numbers(h5py: Any, dataset: Any) -> str:  # noqa: ANN401
         return "is text or a cell array; it must be a vector of real numbers"
     if dataset.shape is None:
         return "is empty; it must be a vector of real numbers"
+    if channel_side(kind, dataset.shape):
+        return ""
     return no_vector(np.dtype(float) if kind.names else kind, dataset.shape)
 
 
@@ -285,7 +304,7 @@ def _read(raw: RawFile, name: str, one: _Array) -> None:
     if one.member:
         raw.add(name, one.dataset.fields([one.member])[()][one.member], None)
         return
-    values = one.dataset[()]
+    values = one.dataset[one.part]
     lacking = np.flatnonzero(np.isin(values, one.missing)) if one.missing else NONE
     if lacking.size:
         raw.give_up(

@@ -17,8 +17,10 @@ from breakaway.measure.logs.raw import RawFile, guarded
 def open_mat(path: Path, budget: Budget) -> Iterator[RawFile]:
     """Open a MATLAB file of version 4 to 7.3, whose channels are its vectors.
 
-    The fields of a structure are channels by the name ``structure.field``; structures within
-    structures are not read. Files of version 7.3 are HDF5, which needs h5py.
+    Those of a matrix are ``log#1``, ``log#2`` and so on, along its shorter side. The fields of a
+    structure are ``structure.field``, those of the second of several ``structure#2.field``; data
+    beside their name have that name, as dSPACE and Simulink write them. Files of version 7.3 are
+    HDF5, which needs h5py.
 
     Raises
     ------

@@ -17,7 +17,7 @@ from typing import BinaryIO, Literal
 import numpy as np
 
 from breakaway.measure.logs.budget import Budget
-from breakaway.measure.logs.raw import DEFLATE_RATIO, RawFile
+from breakaway.measure.logs.raw import DEFLATE_RATIO, MOST_COLUMNS, RawFile
 
 Order = Literal["<", ">"]
 """Which byte of a number comes first: the lowest or the highest."""
@@ -39,9 +39,19 @@ TYPES = {
 }
 """Type of an element that holds numbers -> that of its array."""
 
-STRUCTURE, OPAQUE, NUMBERS = 2, 17, range(6, 16)
+STRUCTURE, TEXT, OPAQUE, NUMBERS = 2, 4, 17, range(6, 16)
+UTF_8 = 16
 CLASSES = {1: "cell", 2: "struct", 3: "object", 4: "char", 5: "sparse", 16: "function handle"}
 """Classes of matrices; those of full matrices of numbers are 6 to 15."""
+
+LABELS = {"Name": "Data", "label": "values"}
+"""Field with a text -> the field beside it whose name that is."""
+OBJECT = (
+    "is an object of MATLAB, such as a timeseries or timetable, whose layout is not public: save "
+    "its numbers, such as t = ts.Time; x = ts.Data; save('log.mat', 't', 'x')"
+)
+DEEPEST = 8
+"""Most structures within structures."""
 
 COMPLEX = 0x0800
 MOST_DIMENSIONS = 32
@@ -58,7 +68,7 @@ class _Variable:
 
 
 def decode(raw: RawFile, stream: BinaryIO, budget: Budget) -> None:
-    """Add the vectors of a file, and the vectors that are fields of its structures.
+    """Add the vectors of a file, the channels of its matrices, and the fields of its structures.
 
     Raises
     ------
@@ -149,53 +159,104 @@ def _text(content: memoryview) -> str:
     return bytes(content).split(b"\0")[0].decode("latin-1")
 
 
+@dataclass(frozen=True)
+class _Matrix:
+    """A matrix: what its header says, and the elements behind it."""
+
+    kind: int
+    is_complex: bool
+    shape: tuple[int, ...]
+    name: str
+    parts: Iterator[tuple[int, memoryview]]
+
+
+def _opened(content: memoryview, order: Order) -> _Matrix:
+    """Read the header of a matrix."""
+    parts = _elements(content, order)
+    flags = int(_numbers(next(parts), order)[0])
+    kind = flags & 0xFF
+    if kind == OPAQUE:  # has no shape, but a name
+        return _Matrix(kind, False, (), _text(next(parts)[1]), parts)
+    shape = [int(n) for n in _numbers(next(parts), order)[: MOST_DIMENSIONS + 1]]
+    if len(shape) > MOST_DIMENSIONS or min(shape, default=0) < 0:
+        raise ValueError(f"a matrix has negative dimensions, or more than {MOST_DIMENSIONS}")
+    return _Matrix(kind, bool(flags & COMPLEX), tuple(shape), _text(next(parts)[1]), parts)
+
+
 def _add_matrix(
-    raw: RawFile, budget: Budget, content: memoryview, order: Order, name: str = ""
+    raw: RawFile,
+    budget: Budget,
+    content: memoryview,
+    order: Order,
+    name: str = "",
+    depth: int = 0,
 ) -> None:
     """Add a matrix; its own name counts unless it is a field, which has the name given."""
     if not len(content):  # an empty field
         raw.give(name, np.zeros(0), None)
         return
-    parts = _elements(content, order)
-    flags = int(_numbers(next(parts), order)[0])
-    kind, is_field = flags & 0xFF, bool(name)
-    if kind == OPAQUE:  # has no shape, but a name
-        name = name or _text(next(parts)[1])
-        raw.refuse(name, "is of class object; it must be a vector of real numbers")
-        return
-    shape = [int(n) for n in _numbers(next(parts), order)[: MOST_DIMENSIONS + 1]]
-    if len(shape) > MOST_DIMENSIONS or min(shape, default=0) < 0:
-        raise ValueError(f"a matrix has negative dimensions, or more than {MOST_DIMENSIONS}")
-    own = _text(next(parts)[1])
-    name = name or own
-    if kind == STRUCTURE and math.prod(shape) == 1 and not is_field:
-        _add_fields(raw, budget, name, parts, order)
-    elif kind not in NUMBERS:
-        what = CLASSES.get(kind, str(kind))
+    one = _opened(content, order)
+    name = name or one.name
+    if one.kind == OPAQUE:
+        raw.refuse(name, OBJECT)
+    elif one.kind == STRUCTURE and 1 <= math.prod(one.shape) <= MOST_COLUMNS:
+        if depth == DEEPEST:
+            raw.refuse(name, f"lies deeper than {DEEPEST} structures; move it up")
+            return
+        _add_structures(raw, budget, name, one, order, depth)
+    elif one.kind not in NUMBERS:
+        what = CLASSES.get(one.kind, str(one.kind))
         raw.refuse(name, f"is of class {what}; it must be a vector of real numbers")
-    elif flags & COMPLEX:
+    elif one.is_complex:
         raw.refuse(name, "is of type complex; it must be a vector of real numbers")
     else:
-        numbers = _numbers(next(parts), order)
+        numbers = _numbers(next(one.parts), order)
         budget.take(f"'{name}'", 8 * numbers.size, len(content))
-        raw.give(name, numbers.reshape(shape, order="F"), None)
+        raw.give(name, numbers.reshape(one.shape, order="F"), None)
 
 
-def _add_fields(
-    raw: RawFile,
-    budget: Budget,
-    name: str,
-    parts: Iterator[tuple[int, memoryview]],
-    order: Order,
+def _add_structures(
+    raw: RawFile, budget: Budget, name: str, one: _Matrix, order: Order, depth: int
 ) -> None:
-    """Add the fields of a structure as ``name.field``."""
-    width = int(_numbers(next(parts), order)[0])
-    texts = next(parts)[1]
+    """Add the fields of structures, as ``name.field`` or ``name#2.field``.
+
+    Data beside a text that names them have that name: ``Data`` beside ``Name``, as dSPACE writes,
+    and ``values`` beside ``label``, as Simulink does.
+    """
+    width = int(_numbers(next(one.parts), order)[0])
+    texts = next(one.parts)[1]
     if width <= 0:
         raise ValueError(f"the names of fields are {width} bytes long")
-    for place in range(0, len(texts), width):
-        field = _text(texts[place : place + width])
-        kind, content = next(parts)
-        if kind != MATRIX:
-            raise ValueError(f"an element of type {kind} stands where a field must")
-        _add_matrix(raw, budget, content, order, f"{name}.{field}")
+    fields = [_text(texts[place : place + width]) for place in range(0, len(texts), width)]
+    count = math.prod(one.shape)
+    for number in range(1, count + 1):
+        contents = {field: _field(next(one.parts)) for field in fields}
+        prefix = name if count == 1 else f"{name}#{number}"
+        for field, content in contents.items():
+            told = next((label for label, data in LABELS.items() if data == field), "")
+            label = _label(contents.get(told), order)
+            full = f"{name}.{label}" if label else f"{prefix}.{field}"
+            _add_matrix(raw, budget, content, order, full, depth + 1)
+
+
+def _field(element: tuple[int, memoryview]) -> memoryview:
+    kind, content = element
+    if kind != MATRIX:
+        raise ValueError(f"an element of type {kind} stands where a field must")
+    return content
+
+
+def _label(content: memoryview | None, order: Order) -> str:
+    """Return a text that names what stands beside it, or nothing."""
+    if content is None or not len(content):
+        return ""
+    one = _opened(content, order)
+    element = next(one.parts, None) if one.kind == TEXT else None
+    if element is None:
+        return ""
+    kind, data = element
+    if kind == UTF_8:
+        text = bytes(data).decode("utf-8", "replace")
+    else:
+        text = "".join(map(chr, _numbers(element, order).tolist()))
+    return text.strip() if text.isprintable() else ""

@@ -34,6 +34,9 @@ MOST_NAMES = 16_384
 EXACT = 2**53
 """Integers up to this are exact as float64."""
 
+MOST_COLUMNS = 256
+"""Most channels of a matrix."""
+
 LONGEST_NAME = 1000
 """Most characters of the name of a channel."""
 
@@ -96,8 +99,12 @@ class RawFile:
             self.read(missing)
 
     def give(self, name: str, values: npt.ArrayLike, t_s: Array | None, unit: str = "") -> None:
-        """List a channel that is read already, or note why it is none."""
+        """List a channel that is read already, or note why it is none; of a matrix, several."""
         array = np.asarray(values)
+        if side := channel_side(array.dtype, array.shape):
+            for place in range(array.shape[side.axis]):
+                self.give(side.name(name, place), array.take(place, side.axis), t_s, unit)
+            return
         if name in self:
             self.channels.pop(name, None)
         elif reason := no_vector(array.dtype, array.shape):
@@ -155,13 +162,39 @@ def ends(rows: npt.NDArray[np.intp]) -> bool:
     return len(rows) > 0 and int(rows[-1]) == len(rows) - 1
 
 
+@dataclass(frozen=True)
+class Side:
+    """The side of a matrix along which its channels stand."""
+
+    axis: int
+
+    @staticmethod
+    def name(matrix: str, place: int) -> str:
+        """Name a channel by its place from 1, as columns of one name in a text file."""
+        return f"{matrix}#{place + 1}"
+
+
+def channel_side(kind: np.dtype[Any], shape: tuple[int, ...]) -> Side | None:
+    """Find out along which side a matrix of real numbers has its channels: the shorter one.
+
+    None for what is no matrix, for a square one, which does not tell, and for one with more than
+    `MOST_COLUMNS` channels, which is rather a picture.
+    """
+    if len(shape) != 2 or kind.kind not in "fiub" or not 1 < min(shape) <= MOST_COLUMNS:
+        return None
+    return None if shape[0] == shape[1] else Side(int(shape[1] < shape[0]))
+
+
 def no_vector(kind: np.dtype[Any], shape: tuple[int, ...]) -> str:
     """Say why an array is no vector of real numbers, or nothing."""
     if kind.kind not in "fiub":
         return f"is of type {kind}; it must be real numbers"
     size = math.prod(shape)
     if size == 0 or max(shape, default=1) != size:
-        return f"is an array of shape {shape}; it must be a vector of real numbers"
+        return (
+            f"is an array of shape {shape}; it must be a vector of real numbers, or a matrix that "
+            f"is longer than wide, of at most {MOST_COLUMNS} channels"
+        )
     return ""
 
 
