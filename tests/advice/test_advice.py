@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,7 @@ from breakaway.ask.advice.worth import _gain, worths
 pytestmark = pytest.mark.slow
 
 SEIZED = bk.load_population("seized_parts")
+ROOT = Path(__file__).parents[2]
 
 
 def test_the_same_call_gives_the_same_bits_on_any_threads(
@@ -181,6 +184,19 @@ def test_a_joint_file_gives_its_draws_and_assumes_the_rest(joint_file: bk.JointF
     assert "stiction_n" in parts.told and "correlation_length_m" in parts.assumed
     assert set(parts.told).isdisjoint(parts.assumed)
     assert any("log " in line for line in parts.provenance)
+
+
+def test_a_pull_tells_its_forces_and_the_rest_is_called_assumed() -> None:
+    log = bk.read_log(ROOT / "examples/10_from_pull_to_report/part_1.csv")
+    parts = parts_of(bk.joint_from_pull(log, mass_kg=2.0))
+    assert parts.told == ("stiction_n", "stiction_ratio", "mass_kg")
+    assert {"presliding_m", "bristle_damping_ratio", "stribeck_velocity_m_per_s"} <= set(
+        parts.assumed
+    )
+    drawn = bk.draw_parts(parts.population, 200, seed=3)
+    assert 2300.0 < np.median(drawn["stiction_n"]) < 2500.0
+    assert (drawn["mass_kg"] == 2.0).all()
+    assert any("bound from below" in line for line in parts.provenance)
 
 
 @pytest.mark.parametrize(

@@ -112,5 +112,6 @@ def _provenance(file: JointFile) -> tuple[str, ...]:
     return (
         f"log {made.log}{digest}, {made.samples} samples, by {made.method}",
         *([f"95 % intervals: {intervals}"] if intervals else []),
+        *(f"{name} is a bound from below: {why}" for name, why in file.at_least.items()),
         *made.notes,
     )
