@@ -311,6 +311,58 @@ def test_mcap_nested_fields(tmp_path: Path) -> None:
     assert log.channels["force_n"].from_name == "rig/state/cell.force_N"
 
 
+def test_lists_in_mcap_messages_are_read_by_place(tmp_path: Path) -> None:
+    messages = [
+        (10**18 + k * 10**7, {"position": [k / 2, -k / 4], "effort": [k, 2 * k], "map": [0] * 300})
+        for k in range(50)
+    ]
+    path = write_messages(tmp_path, "json", *messages)
+    channels = {
+        "position_m": {"from": "position[1]", "unit": "m"},
+        "force_n": {"from": "rig/state/effort[0]", "unit": "N"},
+    }
+    log = read_log(path, {"channels": channels})
+    np.testing.assert_array_equal(log.position_m, -np.arange(50.0) / 4)
+    np.testing.assert_array_equal(log.force_n, np.arange(50.0))
+    assert not any("map" in name for name in log.ignored_columns)
+
+
+def test_one_bad_mcap_message_is_left_out_and_counted(tmp_path: Path) -> None:
+    path = tmp_path / "motor.mcap"
+    with path.open("wb") as stream:
+        writer = mcap.writer.Writer(stream)
+        writer.start()
+        channel = writer.register_channel("rig", "json", 0)
+        for k in range(30):
+            data = json.dumps({"x_m": float(k), "force_n": 1.0}) if k != 7 else '{"x_m": 7.0, '
+            writer.add_message(channel, k * 10**7, data.encode(), k * 10**7)
+        writer.finish()
+    log = read_log(path)
+    assert log.position_m.tolist() == [float(k) for k in range(30) if k != 7]
+    assert any(
+        one.kind == "invalid" and one.count == 1 and "not readable JSON" in str(one)
+        for one in log.findings
+    )
+
+
+def test_an_mcap_recording_that_a_crash_cut_off_is_read_up_to_there(tmp_path: Path) -> None:
+    path = tmp_path / "motor.mcap"
+    with path.open("wb") as stream:
+        writer = mcap.writer.Writer(stream, chunk_size=400)
+        writer.start()
+        channel = writer.register_channel("rig", "json", 0)
+        for k in range(200):
+            data = json.dumps({"x_m": float(k), "force_n": 1.0}).encode()
+            writer.add_message(channel, k * 10**7, data, k * 10**7)
+        writer.finish()
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 3])
+    log = read_log(path)
+    assert 10 <= log.rows < 200
+    assert log.position_m.tolist() == [float(k) for k in range(log.rows)]
+    assert [one.kind for one in log.findings].count("cut_off") == 1
+
+
 @pytest.mark.parametrize(
     ("encoding", "content", "words"),
     [

@@ -13,7 +13,8 @@ constant           all values are equal
 quantization       the values are multiples of a step, see `quantum`
 unit               the mapping's unit is not the one that the file states
 cut_off            the recording ends within a piece that was not finished
-invalid            samples that the file marks as invalid are left out
+invalid            samples that the file marks as invalid, or messages that cannot be read, are
+                   left out
 blank              blank lines are left out
 slower             a column has a value in every so many-th row only
 ends               a column has no values from some row on

@@ -43,11 +43,17 @@ class Message:
     data: memoryview
 
 
+class CutOffError(ValueError):
+    """The file ends within a record, as where the recorder was stopped by a crash."""
+
+
 def messages(stream: BinaryIO, budget: Budget) -> Iterator[Message]:
     """Give the messages of a file in the order of the file.
 
     Raises
     ------
+    CutOffError
+        The file ends within a record; what was given before is whole.
     ValueError
         The file is damaged.
     LogError
@@ -77,10 +83,10 @@ def _records(stream: BinaryIO, budget: Budget) -> Iterator[tuple[int, memoryview
     while True:
         head = stream.read(HEAD.size)
         if len(head) < HEAD.size:
-            raise ValueError("its end is cut off")
+            raise CutOffError("its end is cut off")
         kind, length = HEAD.unpack(head)
         if length > end - stream.tell():
-            raise ValueError(f"a record claims {length} bytes of {end - stream.tell()}")
+            raise CutOffError(f"a record claims {length} bytes of {end - stream.tell()}")
         if kind == DATA_END:
             (stated,) = struct.unpack("<I", stream.read(length)[:4])
             if stated not in (0, check):
