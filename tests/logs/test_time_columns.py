@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from nptdms import ChannelObject, TdmsWriter
+from tests.logs.recorders import printed_mapping
 
 from breakaway.errors import LogError
 from breakaway.measure.logs import Log, read_log
@@ -112,3 +114,50 @@ def test_text_of_other_encodings(tmp_path: Path, encoding: str) -> None:
     check(log, np.arange(ROWS) / 100.0)
     assert ("the text is read as cp1252" in log.history) == (encoding == "cp1252")
     assert log.position_m[-1] == pytest.approx(199e-6)
+
+
+def test_tdms_dates_with_times_are_a_time_column(tmp_path: Path) -> None:
+    start = np.datetime64("2026-03-01T08:00:00", "us")
+    moments = start + 1250 * np.arange(50).astype("timedelta64[us]")
+    path = tmp_path / "rig.tdms"
+    with TdmsWriter(path) as writer:
+        writer.write_segment(
+            [
+                ChannelObject("Rig", "Clock", moments),
+                ChannelObject("Rig", "x_m", np.arange(50.0)),
+                ChannelObject("Rig", "force_N", -np.arange(50.0)),
+            ]
+        )
+    log = read_log(path, {"time": {"from": "Clock"}})
+    np.testing.assert_allclose(log.t_s, 1.25e-3 * np.arange(50), atol=1e-12)
+    assert log.force_n.tolist() == (-np.arange(50.0)).tolist()
+
+
+def test_a_tdms_start_that_was_never_set_is_told(tmp_path: Path) -> None:
+    told = {"wf_start_time": np.datetime64("1904-01-01T00:00:00", "us"), "wf_increment": 0.01}
+    path = tmp_path / "rig.tdms"
+    with TdmsWriter(path) as writer:
+        writer.write_segment(
+            [ChannelObject("Rig", name, np.arange(50.0), told) for name in ("x_m", "force_N")]
+        )
+    log = read_log(path)
+    assert log.t_s[0] == 0.0
+    (found,) = [one for one in log.findings if one.kind == "unset_start"]
+    assert found.count == 2 and "1904" in str(found)
+
+
+def test_the_mapping_for_labview_tdms_works_as_printed(tmp_path: Path) -> None:
+    moments = np.datetime64("2026-03-01T08:00:00", "us") + 1250 * np.arange(50)
+    path = tmp_path / "rig.tdms"
+    with TdmsWriter(path) as writer:
+        writer.write_segment(
+            [
+                ChannelObject("Rig", "Clock", moments),
+                ChannelObject("Rig", "Encoder", np.arange(50.0)),
+                ChannelObject("Rig", "Load cell", np.arange(50.0) / 8.0),
+            ]
+        )
+    log = read_log(path, printed_mapping("LabVIEW TDMS"))
+    np.testing.assert_allclose(log.t_s, 1.25e-3 * np.arange(50), atol=1e-12)
+    np.testing.assert_allclose(log.position_m, 1e-3 * np.arange(50), atol=1e-15)
+    np.testing.assert_allclose(log.force_n, 125.0 * np.arange(50), atol=1e-9)

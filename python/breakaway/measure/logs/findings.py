@@ -15,6 +15,7 @@ unit               the mapping's unit is not the one that the file states
 cut_off            the recording ends within a piece that was not finished
 invalid            samples that the file marks as invalid, or messages that cannot be read, are
                    left out
+unset_start        a start of a recording that was never set, 1904, is ignored
 blank              blank lines are left out
 slower             a column has a value in every so many-th row only
 ends               a column has no values from some row on
@@ -54,6 +55,7 @@ Kind = Literal[
     "unit",
     "cut_off",
     "invalid",
+    "unset_start",
     "blank",
     "slower",
     "ends",

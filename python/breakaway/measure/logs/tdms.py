@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from breakaway.base.one_line import counted
 from breakaway.base.reading import open_regular
 from breakaway.measure.logs.budget import Budget
 from breakaway.measure.logs.channel import Array
@@ -44,7 +45,7 @@ def open_tdms(path: Path, budget: Budget) -> Generator[RawFile, None, None]:
     A channel with the properties of a waveform (``wf_increment``) has stamps of its own:
     ``wf_start_offset`` and so on in steps of ``wf_increment``, in s after the earliest
     ``wf_start_time`` of the file. A recording that was appended begins at its own start. The unit
-    is the property ``unit_string``.
+    is the property ``unit_string``. A channel of dates with times is in s after the first of them.
 
     Raises
     ------
@@ -69,10 +70,14 @@ def open_tdms(path: Path, budget: Budget) -> Generator[RawFile, None, None]:
             for name, (group, channel) in channels.items():
                 _list(raw, name, channel, (file, group, channel), segments)
             zero = _first_moment([channel for _, channel in channels.values()], segments)
+            _note_unset(raw, [channel for _, channel in channels.values()], segments)
 
             def read(wanted: list[str]) -> None:
+                moments = [name for name in wanted if channels[name][1].dtype.kind == "M"]
+                _read_moments(raw, budget, {name: channels[name][1] for name in moments}, zero)
                 for name in wanted:
-                    _read(raw, budget, name, channels[name][1], segments, zero)
+                    if name not in moments:
+                        _read(raw, budget, name, channels[name][1], segments, zero)
 
             raw.read = read
             yield raw
@@ -88,7 +93,7 @@ def _list(
     """List a channel, or note why it cannot be read."""
     # Before its type is asked for: npTDMS takes memory for as many scales as are claimed.
     reason = next((why for one in levels if (why := _no_scale(one.properties))), "")
-    if not reason and channel.dtype.kind not in "fiub":
+    if not reason and channel.dtype.kind not in "fiubM":
         reason = f"is of type {channel.dtype}; it must be real numbers"
     units = segments.values_of(channel.path, "unit_string")
     if not reason and len(units) > 1:
@@ -96,7 +101,8 @@ def _list(
             f"changes its unit within the file, from {units[0]!r} to {units[1]!r}: export the "
             "recordings apart"
         )
-    unit = str(channel.properties.get("unit_string", ""))
+    is_moment = not reason and channel.dtype.kind == "M"
+    unit = "s" if is_moment else str(channel.properties.get("unit_string", ""))
     if reason:
         raw.refuse(name, reason, unit)
         return
@@ -104,6 +110,33 @@ def _list(
     rate_hz = 1.0 / step if step else None
     kind, count = str(channel.dtype), len(channel)
     raw.list(ListedChannel(name, unit, kind, count, rate_hz, has_stamps=bool(step)))
+
+
+def _note_unset(raw: RawFile, channels: list[Any], segments: Segments) -> None:
+    """Note starts that were never set."""
+    count = sum(
+        moment <= UNSET
+        for channel in channels
+        for moment in segments.values_of(channel.path, "wf_start_time")
+    )
+    if count:
+        words = f"{counted(count, 'start')} of 1904, which was never set, ignored"
+        raw.notice("unset_start", "", count, words)
+
+
+def _read_moments(
+    raw: RawFile, budget: Budget, channels: Mapping[str, Any], zero: np.datetime64 | None
+) -> None:
+    """Read channels of dates with times, as s after the first of them, or of any recording."""
+    found = {}
+    for name, channel in channels.items():
+        check_claim(raw.path, f"'{name}'", len(channel), raw.path.stat().st_size)
+        budget.take(f"'{name}'", 8 * len(channel), 32 * len(channel))
+        found[name] = channel[:].astype("datetime64[ns]").astype(np.int64)
+    firsts = [int(one[0]) for one in found.values() if one.size]
+    begin = min([*firsts, *([] if zero is None else [int(zero.astype(np.int64))])], default=0)
+    for name, one in found.items():
+        raw.add(name, 1e-9 * (one - begin), None)
 
 
 def _read(
