@@ -14,7 +14,7 @@ from breakaway.ask.advice.parts import at_rig, parts_of
 from breakaway.ask.advice.ranking import difference
 from breakaway.ask.advice.trying import FIRST_JUDGED, TRAINING, _rounds
 from breakaway.ask.advice.ways import ways_of
-from breakaway.ask.advice.worth import _gain, worths
+from breakaway.ask.advice.worth import _gain, _worth_of_law, worths
 
 pytestmark = pytest.mark.slow
 
@@ -155,6 +155,15 @@ def test_knowing_what_decides_is_worth_what_it_spares() -> None:
     groups = np.array_split(np.argsort(q), 4)
     assert _gain(groups, spared) == 0.5
     assert _gain([np.arange(0, 400, 2), np.arange(1, 400, 2)], spared) == 0.0
+
+
+def test_knowing_the_law_is_worth_what_it_decides() -> None:
+    """Under each of two laws another way spares all parts; with like laws there is nothing."""
+    ones, none = np.ones(200), np.zeros(200)
+    found = _worth_of_law(np.array([[ones, none], [none, ones]]))
+    assert 0.4 < found.gain <= 0.5 and found.is_clear
+    alike = _worth_of_law(np.array([[ones, none], [ones, none]]))
+    assert alike.gain == 0.0 and not alike.is_clear
 
 
 def test_knowing_what_decides_nothing_is_worth_nothing(advice: bk.Advice) -> None:

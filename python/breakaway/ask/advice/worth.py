@@ -68,11 +68,26 @@ def worths(tried: Tried) -> list[Worth]:
         for name, words in SHOWN.items()
         if np.ptp(tried.quantities[name]) > 0.0
     ]
-    of_law = by_law.mean(axis=2)
-    gain = float(of_law.max(axis=1).mean() - of_law.mean(axis=0).max())
-    noise = float(over_laws.std(axis=1).max() / np.sqrt(over_laws.shape[1])) if gain else 0.0
-    found.append(Worth("law", "the friction law", gain, 0.5 * noise))
+    found.append(_worth_of_law(by_law))
     return sorted(found, key=lambda one: -one.gain)
+
+
+def _worth_of_law(by_law: Array) -> Worth:
+    """Subtract what chance alone gains: laws that are dealt anew to each part tell nothing."""
+
+    def gain(spared: Array) -> float:
+        shares = spared.mean(axis=2)
+        return float(shares.max(axis=1).mean() - shares.mean(axis=0).max())
+
+    rng = np.random.default_rng(0)
+    laws, ways, parts = by_law.shape
+    by_chance = []
+    for _ in range(SHUFFLES):
+        order = rng.permuted(np.tile(np.arange(laws), (parts, 1)), axis=1)  # part, law
+        dealt = by_law[order.T[:, None, :], np.arange(ways)[None, :, None], np.arange(parts)]
+        by_chance.append(gain(dealt))
+    left = max(gain(by_law) - float(np.mean(by_chance)), 0.0)
+    return Worth("law", "the friction law", left, float(np.std(by_chance)))
 
 
 def _worth(name: str, words: str, values: Array, unharmed: Array) -> Worth:
