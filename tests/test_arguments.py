@@ -487,7 +487,16 @@ def fits(name, parameter, value):
 
 
 NUMBERS = (
-    *("amplitude", "bias", "budget_s", "count", "damping_ratio", "decimation", "delay_samples"),
+    *(
+        "amplitude",
+        "bias",
+        "budget_s",
+        "engagement_length_m",
+        "count",
+        "damping_ratio",
+        "decimation",
+        "delay_samples",
+    ),
     *("derivative_filter_s", "end_s", "factor", "force_limit_n", "gap_s", "harmonics", "kd", "ki"),
     *("kp", "lowpass_hz", "mass_kg", "min_rest_s", "min_slip_m", "offset_n", "origin_m"),
     *("period_s", "pole_per_s", "rest_speed_m_per_s", "rows", "run_index", "runs", "samples"),

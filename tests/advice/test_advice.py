@@ -10,7 +10,7 @@ import pytest
 import breakaway as bk
 from breakaway.ask.advice.advising import not_judged
 from breakaway.ask.advice.outcome import Bounds, outcome_of
-from breakaway.ask.advice.parts import at_rig, parts_of
+from breakaway.ask.advice.parts import at_rig, parts_of, with_guide
 from breakaway.ask.advice.ranking import difference
 from breakaway.ask.advice.trying import FIRST_JUDGED, TRAINING, _rounds
 from breakaway.ask.advice.ways import ways_of
@@ -206,6 +206,21 @@ def test_a_pull_tells_its_forces_and_the_rest_is_called_assumed() -> None:
     assert 2300.0 < np.median(drawn["stiction_n"]) < 2500.0
     assert (drawn["mass_kg"] == 2.0).all()
     assert any("bound from below" in line for line in parts.provenance)
+
+
+def test_a_guide_of_known_length_is_told() -> None:
+    parts = with_guide(parts_of("seized_parts"), 0.03)
+    assert parts.told == ("engagement_length_m",) and "engagement_length_m" not in parts.assumed
+    drawn = bk.draw_parts(parts.population, 50, seed=0)
+    assert (drawn["engagement_length_m"] == 0.03).all()
+    same = bk.draw_parts(SEIZED, 50, seed=0)
+    np.testing.assert_array_equal(drawn["stiction_n"], same["stiction_n"])
+
+
+@pytest.mark.parametrize("length_m", [0.0, -0.02, 30.0, float("nan")])
+def test_a_guide_that_is_none_is_refused(length_m: float) -> None:
+    with pytest.raises(bk.ScenarioError, match=r"engagement_length_m: .* is not > 0 and <= 10"):
+        bk.advise("seized_parts", "screw_jack", engagement_length_m=length_m)
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,8 @@ def limits(tmp_path: Path) -> Path:
 def test_the_command_that_the_report_shows_repeats_the_advice(
     call: Call, parts: Path, limits: Path, tmp_path: Path
 ) -> None:
-    asked = ("advise", parts, "--rig", "screw_jack", "--limits", limits, "--parts-max", 16)
+    length = ("--engagement-length-m", 0.003)
+    asked = ("advise", parts, "--rig", "screw_jack", "--limits", limits, "--parts-max", 16, *length)
     done = call(*asked, "--out", tmp_path / "a", "--json")
     assert done.exit_code == 0, done.stderr
     told = json.loads(done.stdout)

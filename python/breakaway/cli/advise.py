@@ -49,6 +49,13 @@ def advise(
             metavar="FILE",
         ),
     ] = None,
+    engagement_length_m: Annotated[
+        float | None,
+        typer.Option(
+            help="Length of the guide in m, from the drawing. Left out: as the population says, or "
+            "20 to 100 mm for a joint file.",
+        ),
+    ] = None,
     budget_s: Annotated[float, typer.Option(help="Time that it may take, in s.")] = 120.0,
     parts_max: Annotated[int, typer.Option(help="Most parts that are judged.")] = 2000,
     seed: Annotated[int, typer.Option(help="Seed of the parts.")] = 0,
@@ -71,6 +78,7 @@ def advise(
             parts,
             rig,
             limits,
+            engagement_length_m=engagement_length_m,
             budget_s=budget_s,
             parts_max=parts_max,
             seed=seed,
@@ -82,7 +90,7 @@ def advise(
         written = write_advice(
             found,
             out,
-            command=_command(parts, rig, limits, found),
+            command=_command(parts, rig, limits, engagement_length_m, found),
             made_of=tuple(f"{path.name}: SHA-256 {_sha256(path)}" for path in read),
         )
     if json:
@@ -99,10 +107,14 @@ def _sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _command(parts: str, rig: str, limits: Path | None, found: Advice) -> str:
+def _command(
+    parts: str, rig: str, limits: Path | None, engagement_length_m: float | None, found: Advice
+) -> str:
     """Give the command that repeats an advice: with as many parts, and time enough for them."""
     words = ["breakaway", "advise", parts, "--rig", rig]
     words += ["--limits", str(limits)] if limits else []
+    if engagement_length_m is not None:
+        words += ["--engagement-length-m", repr(engagement_length_m)]
     words += ["--parts-max", str(found.tried.parts), "--budget-s", "100000"]
     return shlex.join([*words, "--seed", str(found.seed)])
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from breakaway.ask.advice.measurement import design_measurement
 from breakaway.ask.advice.outcome import Bounds
-from breakaway.ask.advice.parts import parts_of
+from breakaway.ask.advice.parts import parts_of, with_guide
 from breakaway.ask.advice.ranking import difference, ranked
 from breakaway.ask.advice.result import Advice, NotJudged
 from breakaway.ask.advice.trying import FIRST_ROUND, Deadline, Trying, try_ways
@@ -38,6 +38,7 @@ def advise(
     rig: str | Path | ExtractionRig = USUAL_RIG,
     limits: str | Path | HarmLimits | None = None,
     *,
+    engagement_length_m: float | None = None,
     budget_s: float = USUAL_BUDGET_S,
     parts_max: int = PARTS_MAX,
     seed: int = 0,
@@ -61,6 +62,9 @@ def advise(
     limits : str, Path or HarmLimits, optional
         What the part and its host may suffer. Left out: the gentle limits of the population, which
         are assumed.
+    engagement_length_m : float, optional
+        Length of the guide in m, > 0 and <= 10, which no log tells. Left out: as the population
+        says, or 20 to 100 mm of a joint file, which is assumed.
     budget_s : float
         Time that trying may take, in s, > 0; the first 16 parts are tried whatever it is. How many
         parts are judged depends on it, and on the machine; the parts themselves do not.
@@ -82,7 +86,8 @@ def advise(
     Raises
     ------
     ScenarioError
-        A file is missing or not valid, or the joint file tells no level of friction.
+        A file is missing or not valid, the joint file tells no level of friction, or the length is
+        out of range.
     StudyError
         A number is out of range.
     KeyboardInterrupt
@@ -109,6 +114,8 @@ def advise(
     if parts_max < FIRST_ROUND:
         raise StudyError(f"parts_max: {parts_max} is not >= {FIRST_ROUND}; give more parts")
     asked = parts_of(parts)
+    if engagement_length_m is not None:
+        asked = with_guide(asked, engagement_length_m)
     bounds = Bounds(
         limits if limits is None or isinstance(limits, HarmLimits) else load_limits(limits),
         asked.population.gentle,

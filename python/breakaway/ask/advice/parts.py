@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from breakaway.base.reading import read_toml
 from breakaway.errors import ScenarioError
 from breakaway.measure.identification.joint_file import JointFile
+from breakaway.model.scenario.distribution import Uniform
 from breakaway.model.scenario.extraction_rig import ExtractionRig
 from breakaway.model.scenario.files import load_population, preset_names
 from breakaway.model.scenario.laws import Law
@@ -16,6 +17,8 @@ from breakaway.run.parts_overlay import lay_over_parts
 
 ASSUMED = "seized_parts"
 """The population whose ranges stand for what a joint file does not tell."""
+LONGEST_GUIDE_M = 10.0
+"""A longer guide is a slip of the unit."""
 USUAL_LAWS: tuple[Law, ...] = ("lugre", "elasto_plastic", "gms")
 """Laws that are asked; a log of one pull excludes none of them."""
 
@@ -62,6 +65,33 @@ def parts_of(source: str | Path | PartPopulation | JointFile) -> Parts:
     if is_joint:
         return _of_joint(JointFile.load(source), name)
     return _of_population(load_population(source), name)
+
+
+def with_guide(parts: Parts, engagement_length_m: float) -> Parts:
+    """Give the parts with a guide of known length, as a drawing tells it.
+
+    Raises
+    ------
+    ScenarioError
+        The length is not that of a guide.
+
+    """
+    name = "engagement_length_m"
+    if not 0.0 < engagement_length_m <= LONGEST_GUIDE_M:
+        raise ScenarioError(
+            f"{name}: {engagement_length_m!r} is not > 0 and <= {LONGEST_GUIDE_M:g}; give the "
+            "length of the guide in m"
+        )
+    known = Uniform(low=engagement_length_m, high=engagement_length_m)
+    population = parts.population.model_copy(
+        update={"parts": parts.population.parts.model_copy(update={name: known})}
+    )
+    return replace(
+        parts,
+        population=population,
+        told=tuple(one for one in QUANTITIES if one in parts.told or one == name),
+        assumed=tuple(one for one in parts.assumed if one != name),
+    )
 
 
 def at_rig(population: PartPopulation, rig: ExtractionRig) -> PartPopulation:
