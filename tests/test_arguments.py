@@ -178,7 +178,7 @@ def world(tmp_path_factory):
         studied=bk.run_study(study, out=folder / "study"),
         tuned=bk.tune(tuning, out=folder / "tuning"),
         comparison=comparison,
-        advised=bk.advise(population, parts_max=16, budget_s=1e6),
+        advised=bk.advise(population, "fast_force", parts_max=16, budget_s=1e6),
         pid=bk.design.SampledPid(bk.design.PidGains(kp=3.1e6, ki=1.3e9, kd=724.0), period_s=1e-5),
     )
 
@@ -295,7 +295,10 @@ def calls(w):
         "export_c": (bk.export_c, {"scenario": w.scenario, "out": w.folder / "c"}),
         "export_fmu": (bk.export_fmu, {"scenario": w.scenario, "out": w.folder / "rig.fmu"}),
         "find_breakaway_events": (bk.find_breakaway_events, {"log": w.starts[0]}),
-        "advise": (bk.advise, {"parts": w.population, "parts_max": 16, "budget_s": 1e-3}),
+        "advise": (
+            bk.advise,
+            {"parts": w.population, "rig": "fast_force", "parts_max": 16, "budget_s": 1e-3},
+        ),
         "check_accuracy": (
             bk.check_accuracy,
             {"scenario": w.scenario, "run_index": 0, "progress": None},
@@ -487,21 +490,13 @@ def fits(name, parameter, value):
 
 
 NUMBERS = (
-    *(
-        "amplitude",
-        "bias",
-        "budget_s",
-        "engagement_length_m",
-        "count",
-        "damping_ratio",
-        "decimation",
-        "delay_samples",
-    ),
+    *("amplitude", "bias", "budget_s", "count", "damping_ratio", "decimation", "delay_samples"),
     *("derivative_filter_s", "end_s", "factor", "force_limit_n", "gap_s", "harmonics", "kd", "ki"),
     *("kp", "lowpass_hz", "mass_kg", "min_rest_s", "min_slip_m", "offset_n", "origin_m"),
     *("period_s", "pole_per_s", "rest_speed_m_per_s", "rows", "run_index", "runs", "samples"),
     *("seed", "settling_time_s", "sliding_window_s", "speed_m_per_s", "start_m", "starts"),
     *(
+        "engagement_length_m",
         "steps_per_row",
         "threads",
         "total",
