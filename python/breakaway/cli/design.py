@@ -110,7 +110,7 @@ def design(
     With --out, the folder gets design.json and, for each gain set, a Bode
     plot, a Nyquist plot, a root locus and the limit cycle, as PNG and SVG.
     """
-    from breakaway.cli.overlay import laid
+    from breakaway.cli.laid import laid
     from breakaway.model.scenario import load_scenario
 
     asked, overlay = laid(load_scenario(scenario), joint)

@@ -72,7 +72,7 @@ def export_c(
     and does not allocate memory. The scenario's numbers are parameters that
     you can change at run time; its kinds and options are fixed.
     """
-    from breakaway.cli.overlay import laid
+    from breakaway.cli.laid import laid
     from breakaway.export import export_c as write
     from breakaway.model.scenario import load_scenario
 
@@ -109,7 +109,7 @@ def export_fmu(
     or clang on PATH, or the one that CC names. Without one, the FMU holds only
     sources.
     """
-    from breakaway.cli.overlay import laid
+    from breakaway.cli.laid import laid
     from breakaway.export import export_fmu as write
     from breakaway.model.scenario import load_scenario
 

@@ -126,21 +126,6 @@ def overlay_of(path: Path, scenario: Scenario) -> Overlay:
     return Overlay(path, joint_file, scenario, changed)
 
 
-def laid(scenario: Scenario, path: Path | None) -> tuple[Scenario, Overlay | None]:
-    """Lay a joint file over a scenario where one is given.
-
-    Raises
-    ------
-    ScenarioError
-        As `overlay_of`.
-
-    """
-    if path is None:
-        return scenario, None
-    overlay = overlay_of(path, scenario)
-    return overlay.scenario, overlay
-
-
 def _value(scenario: Scenario, field: str) -> float | None:
     """Value of a field, None where the scenario has no such field."""
     found: object = scenario

@@ -71,7 +71,7 @@ def run(
         refuse_to_overwrite(Path(scenario), out / "scenario.toml")
     if seed is not None:
         asked = asked.with_(seed=seed)
-    from breakaway.cli.overlay import laid
+    from breakaway.cli.laid import laid
 
     asked, overlay = laid(asked, joint)
     finished, files = _simulate(asked, out)
