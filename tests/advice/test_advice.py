@@ -227,12 +227,21 @@ def test_a_guide_that_is_none_is_refused(length_m: float) -> None:
     ("changes", "words"),
     [
         ({"budget_s": 0.0}, "budget_s: 0.0 is not > 0"),
+        ({"budget_s": float("nan")}, "budget_s: nan is not > 0"),
+        ({"budget_s": float("inf")}, "budget_s: inf is not > 0"),
         ({"parts_max": 3}, "parts_max: 3 is not >= 16"),
     ],
 )
 def test_numbers_out_of_range_are_refused(changes: dict[str, float], words: str) -> None:
     with pytest.raises(bk.StudyError, match=words):
         bk.advise("seized_parts", "screw_jack", **changes)
+
+
+def test_a_log_is_told_how_it_becomes_a_joint(tmp_path: Path) -> None:
+    log = tmp_path / "pull.csv"
+    log.write_text("t_s,position_m,force_n\n0,0,0\n")
+    with pytest.raises(bk.ScenarioError, match=r"^pull\.csv: is not TOML; .* breakaway events LOG"):
+        bk.advise(log)
 
 
 def test_what_is_no_file_is_named() -> None:

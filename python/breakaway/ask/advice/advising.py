@@ -109,8 +109,8 @@ def advise(
     """
     check_arguments(advise, locals(), StudyError)
     thread_count(threads)
-    if budget_s <= 0.0:
-        raise StudyError(f"budget_s: {budget_s!r} is not > 0; give the seconds it may take")
+    if not 0.0 < budget_s < float("inf"):
+        raise StudyError(f"budget_s: {budget_s!r} is not > 0 and finite; give the seconds")
     if parts_max < FIRST_ROUND:
         raise StudyError(f"parts_max: {parts_max} is not >= {FIRST_ROUND}; give more parts")
     asked = parts_of(parts)

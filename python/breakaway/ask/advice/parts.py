@@ -60,8 +60,13 @@ def parts_of(source: str | Path | PartPopulation | JointFile) -> Parts:
     name = Path(source).name
     try:
         is_joint = "provenance" in read_toml(Path(source))
-    except (OSError, ValueError):
+    except OSError:
         is_joint = False  # whoever reads it as a population says what is wrong
+    except ValueError:
+        raise ScenarioError(
+            f"{name}: is not TOML; give a joint or population file: breakaway events LOG "
+            "--out joint.toml makes one of a log"
+        ) from None
     if is_joint:
         return _of_joint(JointFile.load(source), name)
     return _of_population(load_population(source), name)
